@@ -14,6 +14,9 @@ from rig.model.waves import wave
 EVEN, BY_ANGLE = 0.0, 1.0  # of the last shape parameter: the same all round, or wider at some angles of the motor
 
 
+NARROW: Final = 0.25  # of the gap: so far below nothing it may seem to go where it closes altogether
+
+
 class LostMotion(Effect):
     """φ gains b·tanh(T_e/ε), T_e what the spring holds of T: the gap is crossed while the spring is slack, on either
     side K holds as before
@@ -63,5 +66,7 @@ class LostMotion(Effect):
         return (whole, *harmonic(fit, "gap_by_angle", "rad", 1, 2.0), *harmonic(fit, "gap_by_half_turn", "rad", 3, 2.0))
 
     def plausible(self, fit: Fit) -> bool:
-        """A gap is open."""
-        return bool(fit.coefficients[0] > 0)
+        """A gap is open, at every angle: with what is not known of it."""
+        gap, *waves = fit.coefficients
+        narrowest = gap - sum(float(np.hypot(*pair)) for pair in zip(waves[::2], waves[1::2], strict=True))
+        return bool(gap > 0 and narrowest > -NARROW * gap)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -114,10 +115,11 @@ def _notes(
 
 
 def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[dict[str, float], tuple[str, ...]]:
-    """The share of the error that each effect of the model removes, and their names, the one that does most first."""
+    """The share of the error that each effect of the model removes, and their names, the one that does most first: over
+    all runs, and where it acts. A friction under one weight is little over all of them, and may be all there is."""
     own = own_scores(p, s)
     shares = {score.name: score.share for score in scores} | {name: share for name, (share, _) in own.items()}
-    does = {score.name: score.overall for score in scores} | {name: much for name, (_, much) in own.items()}
+    does = {score.name: math.sqrt(score.overall * score.size) for score in scores} | {name: much for name, (_, much) in own.items()}
     return shares, tuple(sorted(shares, key=lambda name: -does[name]))
 
 
