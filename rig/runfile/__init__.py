@@ -15,6 +15,7 @@
 | copies | one run in several folders, taken once |
 | process | who writes a run, and whether they live |
 | samples | archive or journal, one channel at a time |
+| thermometer | which channel is the temperature of the gear |
 | run | `Run`: columns when asked for, whoever made the folder |
 | export/ | CSV, MDF4, MCAP, HDF5; one format a file |
 | importing/ | files of other loggers → run folders |

@@ -21,6 +21,7 @@ from rig.runfile.columns import Array
 from rig.runfile.misfits import misfits, misfits_of_ours, mistyped, usable
 from rig.runfile.samples import Samples, open_samples
 from rig.runfile.text_path import refuse_no_text
+from rig.runfile.thermometer import TEMPERATURE, Thermometer, thermometer
 
 ANGLES: Final = ("theta_m", "theta_l", "counts_m", "counts_l")
 
@@ -105,12 +106,26 @@ class Run:
         return found if isinstance(found, dict) else {}
 
     def has(self, name: str) -> bool:
-        """True when the channel is there and was measured at least once."""
+        """True when the channel is there and was measured at least once; "temperature" as `column` has it."""
+        if name == TEMPERATURE and self.thermometer:
+            name = self.thermometer.channel
         return name in self.samples.layout.names and not self.samples.empty(name)
 
     def column(self, name: str) -> Array | None:
-        """One channel, float64, shape (rows,), NaN where not measured; None when `has` says no. New each time."""
-        return self.samples.column(name) if self.has(name) else None
+        """One channel, float64, shape (rows,), NaN where not measured; None when `has` says no. New each time.
+        "temperature" is that of the gear in °C, whatever the channel is called.
+        """
+        if not self.has(name):
+            return None
+        if name == TEMPERATURE and self.thermometer:
+            found, factor, more = self.thermometer
+            return self.samples.column(found) * factor + more
+        return self.samples.column(name)
+
+    @cached_property
+    def thermometer(self) -> Thermometer | None:
+        """The channel that reads the gear's temperature; None where none has a unit of temperature."""
+        return thermometer((name, self.unit(name), self.meaning(name)) for name in self.samples.layout.names)
 
     def need(self, name: str) -> Array:
         """The channel, or UsageError with the name of what is missing."""

@@ -250,3 +250,23 @@ def test_a_samples_file_that_is_none_is_said_to_be_damaged(tmp_path: Path) -> No
     (folder / "samples.parquet").write_bytes(b"PAR1 no")
     with pytest.raises(DataError, match=r"samples\.parquet cannot be read"):
         Run.open(folder)
+
+
+def test_a_temperature_is_known_by_its_unit_whatever_it_is_called(tmp_path: Path) -> None:
+    angle = in_unit(T, "rad")
+    run = Run.open(with_units(tmp_path / "a", theta_m=angle, temp_gear=in_unit(T + 25.0, "degC")))
+    assert run.has("temperature")
+    np.testing.assert_allclose(run.column("temperature"), T + 25.0)
+    in_kelvin = Run.open(with_units(tmp_path / "b", theta_m=angle, x=in_unit(T + 300.0, "K")))
+    np.testing.assert_allclose(in_kelvin.column("temperature"), T + 26.85)
+    none = Run.open(with_units(tmp_path / "c", theta_m=angle, x=in_unit(T, "V")))
+    assert none.column("temperature") is None
+    assert not none.has("temperature")
+
+
+def test_of_several_temperatures_that_of_the_gear_is_taken(tmp_path: Path) -> None:
+    several = {name: in_unit(T + more, "°C") for name, more in (("t_motor", 1.0), ("t_room", 2.0), ("t_oil", 3.0))}
+    run = Run.open(with_units(tmp_path / "a", theta_m=in_unit(T, "rad"), **several))
+    np.testing.assert_allclose(run.column("temperature"), T + 3.0)
+    named = Run.open(with_units(tmp_path / "b", theta_m=in_unit(T, "rad"), temperature=in_unit(T, "degC"), **several))
+    np.testing.assert_allclose(named.column("temperature"), T)

@@ -88,3 +88,27 @@ class SpringBySpeed(Nameless):
     def amount(self, fit: Fit) -> Amount:
         """Relative, of the stiffness."""
         return sum_of(fit, "at 40 rad/s the stiffness differs by", -100 * fit.known.K, "%")
+
+
+class SpringByWarmth(Nameless):
+    """The stiffness follows a temperature that was logged: θ̃ gains c·T·(Θ − 20 °C)      [tuttle1992]"""
+
+    name: ClassVar[str] = "spring_by_warmth"
+    in_the_spring: ClassVar[bool] = True
+    in_short: ClassVar[str] = "the stiffness follows the temperature"
+    source: ClassVar[str] = "tuttle1992"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"temperature"}
+    REFERENCE: ClassVar[float] = 20.0  # °C
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, of several runs."""
+        return when(reach.runs >= SEVERAL and "temperature" in reach.has)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column."""
+        warmer = np.nan_to_num(signals.temperature, nan=self.REFERENCE) - self.REFERENCE
+        return {Port.WIND_UP: (torque_of(signals) * warmer)[:, None]}
+
+    def amount(self, fit: Fit) -> Amount:
+        """Relative, of the stiffness."""
+        return sum_of(fit, "for each kelvin the stiffness changes by", -100 * fit.known.K, "%")

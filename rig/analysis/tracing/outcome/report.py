@@ -119,7 +119,9 @@ def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[d
     all runs, and where it acts. A friction under one weight is little over all of them, and may be all there is."""
     own = own_scores(p, s)
     shares = {score.name: score.share for score in scores} | {name: share for name, (share, _) in own.items()}
-    does = {score.name: math.sqrt(score.overall * score.size) for score in scores} | {name: much for name, (_, much) in own.items()}
+    does = {score.name: math.sqrt(score.overall * score.size) for score in scores} | {
+        name: much for name, (_, much) in own.items()
+    }
     return shares, tuple(sorted(shares, key=lambda name: -does[name]))
 
 

@@ -26,8 +26,13 @@ def is_certain(selected: Selected, floors: HeldOut) -> bool:
     loud = all(is_loud(at, selected.solution, selected.held) for at in (selected.p.held_out, floors))
     plain = selected.scores and not confounders_in(selected.solution) and not loud
     to_see = bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores)
-    to_see = to_see or (bool(plain) and len(selected.scores) == 1 and are_foretold(selected.p, selected))
+    to_see = to_see or (not loud and stands_in_means(selected))
     return to_see and (len(selected.scores) == 1 or _foretell(selected))
+
+
+def stands_in_means(selected: Selected) -> bool:
+    """Whether all that is selected is one effect, or one law without a name, and foretells the means of unseen runs."""
+    return len(selected.scores) == 1 and are_foretold(selected.p, selected)
 
 
 def _foretell(selected: Selected) -> bool:
@@ -58,9 +63,9 @@ def is_calm(p: Prepared) -> bool:
 
 def is_calm_there(p: Prepared, selected: Selected) -> bool:
     """Whether all that is selected are laws without a name, and the baseline is at the floor in every channel they act
-    in: what another channel has beyond its floor is no reason for them."""
+    in, its means as well: what another channel has beyond its floor is no reason for them."""
     channels = {c for score in selected.scores for _, c in score.ground}
-    if not channels or not selected.names <= CONFOUNDERS.keys():
+    if not channels or not selected.names <= CONFOUNDERS.keys() or stands_in_means(selected):
         return False
     left = p.held_out.residuals(p.baseline, unseen(p.baseline, p.held_out))
     return _is_at_the_floor(p, {key: e for key, e in left.items() if key[1] in channels})

@@ -27,7 +27,7 @@ from rig.analysis.tracing.nameless.readings import (
     TwoConstants,
     TwoGains,
 )
-from rig.analysis.tracing.nameless.springs import EvenSpring, SpringBySpeed, SpringDrift
+from rig.analysis.tracing.nameless.springs import EvenSpring, SpringBySpeed, SpringByWarmth, SpringDrift
 from rig.analysis.tracing.nameless.wiped import WipedGrease
 from rig.model.effect import Effect, Reach
 
@@ -98,6 +98,12 @@ CONFOUNDERS: Final = {
         "time",
         "The stiffness changes through the campaign: the same torque winds the gear up by more or less in later runs. "
         "No effect of the library does so.",
+    ),
+    "spring_by_warmth": Confounder(
+        SpringByWarmth(),
+        "temperature",
+        "The stiffness follows the temperature that was logged: the same torque winds the gear up by more or less when "
+        "it is warmer. No effect of the library does so.",
     ),
     "error_drift": Confounder(
         ErrorDrift(),

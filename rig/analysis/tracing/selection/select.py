@@ -14,12 +14,12 @@ from rig.analysis.tracing.floor.held_out import HeldOut, held_out_blocks, unseen
 from rig.analysis.tracing.floor.noise import Measured, measure, quieter
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.alike import repeats
-from rig.analysis.tracing.selection.as_cogging import as_cogging
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, with_confounders
 from rig.analysis.tracing.selection.elimination import backward_elimination, run_to_the_end, unresolved
 from rig.analysis.tracing.selection.instead_of import at_a_vibration, instead_of_the_gear
 from rig.analysis.tracing.selection.needless import without_idle, without_insignificant, without_needless
 from rig.analysis.tracing.selection.own_scores import own_scores
+from rig.analysis.tracing.selection.plainer import plainer
 from rig.analysis.tracing.selection.selected import Kept, Selected, in_words, is_loud, left_over
 from rig.analysis.tracing.thresholds import EXPLAINED, FREED, MISSING, NAMED, WORSE
 from rig.model.effect import Reach
@@ -36,7 +36,7 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
         solution, held, scores = _polished(p, solution, (solution, held, scores), runs, covered)
     p, solution = _own_kept(p, solution)
     solution, held, scores = _stood_in_for(p, (solution, held, scores), runs, covered)
-    if (other := as_cogging(solution, runs)) is not solution:
+    if (other := plainer(solution, runs)) is not solution:
         solution, held, scores = backward_elimination(other, p.held_out)
     told = solution.design.terms
     while vague := _not_told(p, solution, held, runs, covered):
