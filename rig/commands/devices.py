@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rig.commands.targets import refuse_taken
 from rig.core.errors import Exit, NotReady, UsageError
+from rig.runfile.manifest import write_atomic
 from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
 
         text = first_bench(args.interface, args.channel, args.bitrate, nodes, options)
         with writing(args.out):
-            args.out.write_text(text, encoding="utf-8")
+            write_atomic(args.out, text.encode())
         print(f"wrote {args.out}: replace every number that is assumed, then hdrig doctor --bench {args.out}")
     return Exit.PASS
 

@@ -15,6 +15,8 @@ import numpy.typing as npt
 from rig.commands.targets import refuse_taken
 from rig.core.errors import Exit, UsageError
 from rig.core.units import ARCSEC, RPM
+from rig.runfile.manifest import write_atomic
+from rig.runfile.writing import writing
 
 if TYPE_CHECKING:
     from rig.model.gear import Gear
@@ -187,10 +189,8 @@ def draw(path: Path, wave: Waveform, source: str) -> None:
         title = f"{DRAWING.title}: {wave.mean_speed / RPM:.1f} rpm, {wave.tau:.3f} N·m, {source}"
         title = title.replace("&", "&amp;").replace("<", "&lt;")
         text = f'<!doctype html><meta charset="utf-8"><title>{title}</title><h1>{title}</h1>{text}<p>{DRAWING.note}</p>'
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}; name another place with --out") from None
+    with writing(path):
+        write_atomic(path, text.encode())
 
 
 def curves(wave: Waveform) -> dict[str, Array]:

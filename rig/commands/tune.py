@@ -12,6 +12,7 @@ from rig.commands.show.at_the_rig import at_the_keys
 from rig.commands.show.words import wired_twin
 from rig.commands.targets import refuse_taken, refuse_unwritable
 from rig.core.errors import Exit
+from rig.runfile.manifest import write_atomic
 from rig.runfile.writing import writing
 from rig.session import Session
 from rig.tuning import BANDWIDTHS, as_it_was, describe, find_gains, no_better
@@ -40,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
         best = find_gains(session, bench, print, say)
         if best is not None and args.write is not None:
             with writing(args.write, "--write"):
-                args.write.write_text(best[0].text, encoding="utf-8")
+                write_atomic(args.write, best[0].text.encode())
             changed = f", with the changes of --set ({', '.join(args.set)})" if args.set else ""
             print(
                 f"bench file with the gains found written to {args.write}{changed}: use it with "

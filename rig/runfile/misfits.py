@@ -47,8 +47,9 @@ def _are_numbers(said: object) -> bool:
     return isinstance(said, list) and all(math.isfinite(number(one)) for one in said)
 
 
-def _above_zero(unit: str = "") -> Kind:
-    return Kind(f"a number above 0{f' in {unit}' if unit else ''}", lambda said: stated(said) > 0.0)
+def _between(low: float, high: float, unit: str) -> Kind:
+    """Of what a gear has, from a watch's to a ship's: beyond, a digit or a unit is wrong."""
+    return Kind(f"a number from {low:g} to {high:g} {unit}".rstrip(), lambda said: low <= stated(said) <= high)
 
 
 def _not_negative(unit: str) -> Kind:
@@ -71,22 +72,22 @@ FORMAT: Kinds = {  # the keys that exchange needs
     ("started_utc",): TIME,
     ("gear", "serial"): NAME,
     ("gear", "output"): Kind(" or ".join(OUTPUTS), lambda said: said in OUTPUTS),
-    ("declared", "J_m"): _above_zero("kg·m²"),
-    ("declared", "J_l"): _above_zero("kg·m²"),
-    ("declared", "K"): _above_zero("N·m/rad"),
+    ("declared", "J_m"): _between(1e-10, 1e3, "kg·m²"),
+    ("declared", "J_l"): _between(1e-9, 1e6, "kg·m²"),
+    ("declared", "K"): _between(1e-2, 1e9, "N·m/rad"),
     ("declared", "B_m"): _not_negative("N·m·s/rad"),
     ("declared", "B_ml"): _not_negative("N·m·s/rad"),
     ("declared", "B_l"): _not_negative("N·m·s/rad"),
     ("declared", "B_sp"): _not_negative("N·m·s/rad"),
-    ("declared", "fourier_terms"): _above_zero(),
+    ("declared", "fourier_terms"): _between(1, 1000, ""),
     ("conditions", "tau_ext"): _any("N·m"),
     ("conditions", "output_locked"): Kind("true or false", lambda said: isinstance(said, bool)),
     ("conditions", "depth_mm"): _any("mm"),
     ("conditions", "speed_rpm"): _any("rpm"),
     ("conditions", "assembly"): NAME,
     ("conditions", "note"): TEXT,
-    ("encoders", "motor_counts_per_rev"): _above_zero("counts"),
-    ("encoders", "load_counts_per_rev"): _above_zero("counts"),
+    ("encoders", "motor_counts_per_rev"): _between(4, 1e12, "counts"),
+    ("encoders", "load_counts_per_rev"): _between(4, 1e12, "counts"),
 }
 OURS: Kinds = {  # what our own runs say besides, and somebody else may mean otherwise
     ("label",): TEXT,

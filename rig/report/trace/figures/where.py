@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,6 +21,7 @@ DECADES = (-100.0, -10.0, 0.0, 10.0, 100.0, 1000.0)
 FINER = tuple(sign * m * 10.0**d for d in (-1, 0, 1, 2, 3) for m in (1, 2, 5) for sign in (-1, 1))
 FEWEST = 2  # ticks from which a scale can be read
 APART = 0.22  # of a panel's width between two ticks: their numbers are as wide
+MUTED: dict[str, Any] = {"color": LIGHT["muted"], "fontsize": 10}
 HEAD, BETWEEN, FOOT, LEFT, GAP = 50.0, 34.0, 44.0, 46.0, 12.0
 
 
@@ -115,7 +116,7 @@ def _panel(panel: Axes, curves: Curves, channel: Channel, q: Coordinate) -> None
             there = np.isfinite(values)
             panel.plot(x[there], values[there], marker=marker, ms=2.6, **{**style, "lw": 1.1})
     else:
-        panel.annotate("not varied", (0.5, 0.25), None, "axes fraction", ha="center", color=LIGHT["muted"], fontsize=10)
+        panel.text(0.5, 0.25, "one value held out", transform=panel.transAxes, ha="center", **MUTED)
     _ticks(panel, q)
     foot(panel, q.name)
     panel.margins(x=0.08)
