@@ -87,23 +87,25 @@ def test_what_stands_out_of_the_floors_beside_it_alone_is_no_reason_against_it(l
 
 
 @pytest.mark.parametrize(
-    ("names", "channel", "left", "calm"),
+    ("names", "foretold", "left", "calm"),
     [
-        ({"error_by_speed"}, "A", {"A": 1.04, "M": 1.25}, True),
-        ({"error_by_speed"}, "A", {"A": 1.3, "M": 1.0}, False),
-        ({"error_by_speed", "stribeck_friction"}, "A", {"A": 1.04, "M": 1.25}, False),  # asked as names are
-        (set(), "A", {"A": 1.04, "M": 1.25}, False),
+        ({"error_by_speed"}, False, {"A": 1.04, "M": 1.25}, True),
+        ({"error_by_speed"}, False, {"A": 1.3, "M": 1.0}, False),
+        ({"spring_drift"}, True, {"A": 1.04, "M": 1.0}, False),  # it stands in the means of unseen runs
+        ({"error_by_speed", "stribeck_friction"}, False, {"A": 1.04, "M": 1.25}, False),  # asked as names are
+        (set(), False, {"A": 1.04, "M": 1.25}, False),
     ],
 )
 def test_a_law_without_a_name_needs_a_reason_in_the_channel_it_acts_in(
-    monkeypatch: pytest.MonkeyPatch, names: set[str], channel: str, left: dict[str, float], calm: bool
+    monkeypatch: pytest.MonkeyPatch, names: set[str], foretold: bool, left: dict[str, float], calm: bool
 ) -> None:
     monkeypatch.setattr(module, "unseen", lambda baseline, held_out: None)
+    monkeypatch.setattr(module, "are_foretold", lambda p, selected: foretold)
     held_out = SimpleNamespace(
         residuals=lambda s, d: {(0, c): over for c, over in left.items()},
         beyond_chance=lambda e: (max(e.values()), max(e.values())),
     )
     p: Any = SimpleNamespace(baseline=None, held_out=held_out)
-    scores = [HeldOutScore(name, 1.0, 0.5, 1.0, 1.0, ((0, channel),)) for name in names]
-    selected: Any = SimpleNamespace(names=names, scores=scores)
+    scores = [HeldOutScore(name, 1.0, 0.5, 1.0, 1.0, ((0, "A"),)) for name in names]
+    selected: Any = SimpleNamespace(names=names, scores=scores, p=p)
     assert module.is_calm_there(p, selected) is calm

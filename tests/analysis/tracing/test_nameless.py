@@ -117,7 +117,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump", "even_spring"}
     assert everything - laws(torque=20.0) == {"sensor_curve"}
     assert everything - laws(weights=1) == {"oval_pulley", "sensor_scale"}
-    drifting = {"spring_drift", "error_drift", "sensor_gain_drift", "constant_drift"}
+    drifting = {"spring_drift", "spring_by_warmth", "error_drift", "sensor_gain_drift", "constant_drift"}
     assert everything - laws(runs=2) == drifting | {"sensor_ripple"}
     assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed", "slowing_drag"}
     assert everything - laws(load_turns=0.1) == {"uneven_inertia", "wound_cable"}
