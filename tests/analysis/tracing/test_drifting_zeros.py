@@ -135,3 +135,13 @@ def test_a_drift_of_the_torque_sensor_is_seen_beside_friction_of_the_load_that_s
     drift = found(monkeypatch, list(wander(rng) - SOFT * zero), of_the_torque=list(in_the_load))
     assert drift
     assert drift.torque == pytest.approx(np.ptp(zero), rel=0.05)
+
+
+def test_what_a_lock_test_winds_up_is_no_measure_of_a_sensor_where_runs_turn_freely() -> None:
+    def run(torque: float, locked: bool) -> SimpleNamespace:
+        return SimpleNamespace(has=MEASURED, locked=locked, pieces=[SimpleNamespace(torque=np.full(10, torque))])
+
+    both: Any = SimpleNamespace(runs=[run(40.0, False), run(140.0, True)])
+    alone: Any = SimpleNamespace(runs=[run(140.0, True)])
+    assert module.largest_torque(both) == 40.0
+    assert module.largest_torque(alone) == 140.0

@@ -29,6 +29,7 @@ from rig.model.effects.gravity_unbalance import GravityUnbalance
 from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
+from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
 from rig.model.effects.nonlinear_stiffness import BELOW, CUBIC, KNEE, NonlinearStiffness
 from rig.model.effects.output_once_per_rev import OutputOncePerRev
 from rig.model.effects.presliding_friction import LOAD as LOAD_BUILDS_UP
@@ -757,3 +758,10 @@ def test_what_a_warm_up_takes_away_at_first_is_known_as_well_as_its_numbers_toge
     half = (gone(at).ci95[1] - gone(at).ci95[0]) / 2
     assert half == pytest.approx(1.96 * float(np.linalg.norm(slopes * spread)), rel=1e-3)
     assert effect.sizes(effect.parameters(Fit(at[:2], tuple(at[2:]), np.eye(5), KNOWN, N)))[-1].name.startswith("gone")
+
+
+@pytest.mark.parametrize(("wider", "open_"), [(3e-6, True), (9e-6, True), (2e-5, False)])
+def test_a_gap_that_is_wider_at_some_angles_is_at_none_less_than_closed(wider: float, open_: bool) -> None:
+    law = LostMotion()
+    fit = Fit(np.array([8e-6, 0.0, 0.0, wider, 0.0]), (0.15, BY_ANGLE), 1e-14 * np.eye(6), KNOWN, N)
+    assert law.plausible(fit) is open_
