@@ -6,13 +6,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.floor import steps
 from rig.analysis.tracing.floor.jumps import EDGE, FAR, among, heights, jumps
-from rig.analysis.tracing.floor.steps import Steps, _rested, explained, lost_counts
+from rig.analysis.tracing.floor.steps import Steps, _rested, _sure, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _as_one, _heights
 from rig.analysis.tracing.runs.holdout import HELD_PART
+from rig.analysis.tracing.thresholds import STEP
 from rig.model.effects.missed_counts import LOAD
 from tests.analysis.tracing.spiked import RATIO, Columns, spiked, started
 
@@ -389,3 +391,19 @@ def test_only_what_never_comes_back_is_off_for_good(rng: np.random.Generator) ->
     lost = e + 1e-5 * (np.arange(3000) >= 1500)
     assert steps._for_good(lost, 1e-5)[1490:1510].all()
     assert not steps._for_good(branch, 1e-5)[400:2600].any()
+
+
+def test_two_counts_of_a_fine_encoder_show_over_a_longer_window_and_noise_shows_none(rng: np.random.Generator) -> None:
+    """Beside a wander of 2 Hz, as an output has it, of which a third of a second is full."""
+    onward, keeps = np.ones(12000, dtype=bool), np.exp(-2 * np.pi * 2.0 / 125)
+    hidden = 0
+    for _ in range(10):
+        wander = lfilter([np.sqrt(1 - keeps**2)], [1, -keeps], 2.5e-6 * rng.standard_normal(12000))
+        e = wander + 5e-7 * rng.standard_normal(12000)
+        assert _sure(e, onward) == []
+        lost = e + 13e-6 * (np.arange(12000) >= 7000)
+        hidden += not jumps(lost, onward, STEP, (0.0, np.inf))
+        ((row, size),) = _sure(lost, onward)
+        assert abs(row - 7000) < 8 * EDGE
+        assert size == pytest.approx(13e-6, rel=0.4)
+    assert hidden >= 5

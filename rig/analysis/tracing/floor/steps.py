@@ -63,7 +63,7 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     and goes winds the gear of `compliance` [rad/(N·m)] up, or seems to."""
     keys = [k for k in e if k[1] == "A"]
     onward = {key: _onward(eq, key) for key in keys}
-    sure = [abs(size) for key in keys for _, size in jumps(e[key], onward[key], STEP, (0.0, np.inf))]
+    sure = [abs(size) for key in keys for _, size in _sure(e[key], onward[key])]
     # once it is known how many counts are lost at a time, smaller evidence of the same loss will do
     usual = float(np.median(sure)) if sure else 0.0
     least = ONE * usual if len(sure) >= MANY else FEWER * min(sure, default=0.0)
@@ -93,6 +93,13 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     high = {run: heights(e[run, "A"], at) for run, at in rows.items()}
     sizes, errors = ({run: tuple(of[i] for of in each) for run, each in high.items()} for i in (0, 1))
     return Steps(rows, sizes, {run: tuple(side for _, side in found) for run, found in placed.items()}, errors)
+
+
+def _sure(e: Array, onward: Mask) -> list[tuple[int, float]]:
+    """Jumps that nothing else makes, by the usual window, or where it shows none by a longer one: a single count or two
+    of a fine encoder are in the noise of a third of a second."""
+    every = (0.0, np.inf)
+    return jumps(e, onward, STEP, every) or jumps(e, onward, STEP, every, window=FAR)
 
 
 def _in_other_parts(
