@@ -184,7 +184,7 @@ def _analyse(run: Tame, reference: Source | None, doubt: str, beyond: str) -> Re
     found = Findings(broken=_broken(run, doubt), beyond=beyond)
     motion = motion_of(run)
     if motion is None or motion.theta_m.size < 16:
-        why = "The run has no motor angle: nothing can be said about the gear."
+        why = "No row of the run has a motor angle (theta_m): nothing can be said about the gear."
         if run.manifest.get("rows") == 0:
             why = "The run has no rows, it ended before its first sample: nothing can be said about the gear."
         elif motion is not None:

@@ -50,7 +50,8 @@ class Run:
         about = manifests.read(folder)
         run = cls(folder, about, open_samples(folder))
         if not any(run.has(name) or (not run.rows and name in run.channels) for name in ANGLES):
-            raise UsageError(f"{run.samples.path} has no angle: expected at least one of {', '.join(ANGLES)}")
+            there = f"expected at least one of {', '.join(ANGLES)}, it has {_some(run.samples.layout.names)}"
+            raise UsageError(f"{run.samples.path} has no angle: {there}")
         _refuse_backward_time(run)
         return run
 
@@ -151,6 +152,14 @@ class Run:
     def _about(self, name: str, key: bytes) -> str:
         field: pa.Field = self.samples.layout.field(name)
         return str((field.metadata or {}).get(key, b"").decode(errors="replace"))
+
+
+def _some(names: list[str]) -> str:
+    """A few names in a line."""
+    return (
+        ", ".join(repr(name) for name in names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+        or "none"
+    )
 
 
 def ratio_of(path: Path, about: Mapping[str, Any]) -> float:
