@@ -11,13 +11,16 @@ from markupsafe import Markup
 
 from rig.core.errors import NotReady, UsageError
 from rig.report import words as run_words
+from rig.report.closing.following import DRAWING
+from rig.report.figures import Frame, svg
 from rig.report.shell import css, environment
 from rig.runfile.manifest import contents, parse, told, write_atomic
 
 HERE = Path(__file__).parent
 SOURCE: Final = "compensation.json"
 NAME: Final = "compensation.html"
-WIDE, HIGH, EDGE = 720.0, 220.0, 44.0  # px of a drawing, and its margin for the axes
+WIDE: Final = 720.0  # px of a drawing
+WAYS: Final = ("forth", "back")
 
 
 def write(folder: Path) -> Path:
@@ -39,13 +42,13 @@ def render(found: Mapping[str, Any], name: str) -> str:
         "origin": origin,
         "gear": found["gear"],
         "zero": found["zero"]["sentence"],
-        "speeds": [_speed(s) for s in found["speeds"]],
+        "speeds": [_speed(s, origin.mark, f"c{k}-") for k, s in enumerate(found["speeds"], 1)],
         "css": css(name, origin.mark, HERE),
     }
     return environment(HERE).get_template("compensation.html").render(view)
 
 
-def _speed(s: Mapping[str, Any]) -> dict[str, Any]:
+def _speed(s: Mapping[str, Any], mark: str, prefix: str) -> dict[str, Any]:
     rows = []
     for key, label in (("rms", "RMS"), ("peak_to_peak", "Peak to peak")):
         measured = [s["measured"][which][key] for which in ("without", "with")]
@@ -58,7 +61,7 @@ def _speed(s: Mapping[str, Any]) -> dict[str, Any]:
         "predicted": f"{s['improvement']['predicted']:.1f}",
         "rows": rows,
         "unlike": s["unlike_the_model"],
-        "drawing": Markup(_drawing(s["measured"])),
+        "drawing": Markup(_drawing(s["measured"], mark, prefix)),
     }
 
 
@@ -67,26 +70,8 @@ def _predicted(said: Mapping[str, Any], key: str) -> str:
     return f"{said[key]:.2f} ({low:.2f} to {high:.2f})"
 
 
-def _drawing(measured: Mapping[str, Any]) -> str:
+def _drawing(measured: Mapping[str, Any], mark: str, prefix: str) -> str:
     """Both curves over the motor turn, forth and back, on one scale."""
-    curves = [(which, way, np.array(measured[which][f"{way}_arcsec"])) for which in ("without", "with")
-              for way in ("forth", "back")]  # fmt: skip
-    most = max(float(np.abs(c).max()) for _, _, c in curves) * 1.05
-    lines = []
-    for which, way, c in curves:
-        x = EDGE + (np.arange(c.size) + 0.5) / c.size * (WIDE - 2 * EDGE)
-        y = HIGH / 2 - c / most * (HIGH / 2 - 14)
-        points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
-        ink = "var(--muted)" if which == "without" else "var(--forward)"
-        dash = ' stroke-dasharray="5 3"' if way == "back" else ""
-        lines.append(f'<polyline fill="none" stroke="{ink}" stroke-width="1.6"{dash} points="{points}"/>')
-    axis = (
-        f'<line x1="{EDGE}" x2="{WIDE - EDGE}" y1="{HIGH / 2}" y2="{HIGH / 2}" stroke="var(--axis)"/>'
-        f'<text x="2" y="18" fill="currentColor" font-size="12">{most / 1.05:+.0f}″</text>'
-        f'<text x="2" y="{HIGH - 6}" fill="currentColor" font-size="12">{-most / 1.05:+.0f}″</text>'
-        f'<text x="{EDGE}" y="{HIGH - 2}" fill="currentColor" font-size="12">0°</text>'
-        f'<text x="{WIDE - EDGE - 28}" y="{HIGH - 2}" fill="currentColor" font-size="12">360°</text>'
-    )
-    label = "Error of the load over one turn of the motor, without and with compensation"
-    head = f'<svg class="plot" viewBox="0 0 {WIDE:g} {HIGH:g}" role="img" aria-label="{label}">'
-    return f"{head}{axis}{''.join(lines)}</svg>"
+    found = {f"{which}.{way}": measured[which][f"{way}_arcsec"] for which in ("without", "with") for way in WAYS}
+    curves = {name: np.asarray(values, dtype=np.float64) for name, values in found.items()}
+    return svg(DRAWING, curves, Frame(WIDE, mark), prefix=prefix) or ""
