@@ -13,6 +13,8 @@ from rig.model.waves import wave
 class PositionDependentFriction(Effect):
     """τ_f gains τ_k·cos(k·θ_m + φ)·sgn ω_m      [tuttle1992]
 
+    What rubs on the flexspline turns with it: k·(1 ± 1/N), 2.04 beside 2.
+
     Cogging keeps its sign when the motor turns back; this does not. One direction alone cannot tell them apart.
     """
 
@@ -25,20 +27,15 @@ class PositionDependentFriction(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("order",)
     comes_round: ClassVar[bool] = True
     loose: ClassVar[tuple[bool, ...]] = (False,)
-    ORDERS: Final = (
-        1.0,
-        2.0,
-        3.0,
-        4.0,
-        5.0,
-        6.0,
-        7.0,
-        8.0,
-    )  # two lobes, their halves and what a tight spot between them has
+    ORDERS: Final = tuple(float(k) for k in range(1, 9))  # two lobes, their halves, a tight spot between them
+    RIDING: Final = (2.0, 4.0, 6.0)  # of the flexspline, whose lobes are two
+    LEAST: Final = 0.15  # output turns, over which 2.04 and 2 come apart
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Low orders of the motor."""
-        return tuple((k,) for k in self.ORDERS)
+        """Low orders of the motor, and of what rides on the flexspline where the output turns far enough to tell."""
+        sides = (1.0, -1.0) if reach.load_turns >= self.LEAST else ()
+        riding = (k * (1.0 + sigma / reach.ratio) for sigma in sides for k in self.RIDING)
+        return tuple((k,) for k in (*self.ORDERS, *riding))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine, with the sign of the motion."""
@@ -47,4 +44,4 @@ class PositionDependentFriction(Effect):
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Amplitude and phase."""
-        return harmonic(fit, f"order_{fit.shape[0]:g}", "N·m")
+        return harmonic(fit, f"order_{fit.shape[0]:.4g}", "N·m")

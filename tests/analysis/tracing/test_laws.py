@@ -32,6 +32,7 @@ from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQU
 from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
 from rig.model.effects.nonlinear_stiffness import BELOW, CUBIC, KNEE, NonlinearStiffness
 from rig.model.effects.output_once_per_rev import OutputOncePerRev
+from rig.model.effects.position_dependent_friction import PositionDependentFriction
 from rig.model.effects.presliding_friction import LOAD as LOAD_BUILDS_UP
 from rig.model.effects.presliding_friction import MOTOR as BUILDS_UP
 from rig.model.effects.presliding_friction import PreslidingFriction
@@ -765,3 +766,14 @@ def test_a_gap_that_is_wider_at_some_angles_is_at_none_less_than_closed(wider: f
     law = LostMotion()
     fit = Fit(np.array([8e-6, 0.0, 0.0, wider, 0.0]), (0.15, BY_ANGLE), 1e-14 * np.eye(6), KNOWN, N)
     assert law.plausible(fit) is open_
+
+
+def test_what_rubs_may_ride_on_the_flexspline_where_the_output_turns_far_enough_to_tell() -> None:
+    law = PositionDependentFriction()
+    riding = {round(shape[0], 2) for shape in law.shapes(replace(REACH, load_turns=1.0))} - set(law.ORDERS)
+    assert {2.04, 4.08, 1.96} <= riding
+    assert {shape[0] for shape in law.shapes(replace(REACH, load_turns=0.05))} == set(law.ORDERS)
+    s = motion()
+    (columns,) = law.columns(s, (2.0 * (1 + 1 / N),)).values()
+    lobes = np.cos(2.0 * (s.theta_m + s.theta_m / N)) * s.way
+    np.testing.assert_allclose(columns[:, 0], lobes, atol=1e-9)
