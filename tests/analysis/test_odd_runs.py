@@ -89,7 +89,7 @@ def test_a_run_that_ended_before_its_first_sample_is_said_to_have_no_rows() -> N
     said = analyse(MadeRun({}, {**manifest, "status": "stopped", "exit_reason": "stopped by the operator"}))
     assert said.verdict is Verdict.INCONCLUSIVE
     assert "The run has no rows, it ended before its first sample" in said.sentence
-    assert "no motor angle" in analyse(MadeRun({}, {**manifest, "rows": 5})).sentence
+    assert "No row of the run has a motor angle" in analyse(MadeRun({}, {**manifest, "rows": 5})).sentence
 
 
 @pytest.mark.parametrize("procedure", ["kinematic_error", "constant_torque", "constant_speed"])

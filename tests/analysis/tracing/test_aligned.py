@@ -90,6 +90,7 @@ def teeth_and_a_late_torque(c: Columns, began: float) -> Columns:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_torque_sensor_that_is_a_little_late_is_no_missing_effect_beside_another(
     tmp_path: Path, shared: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -134,6 +134,7 @@ def test_friction_of_the_mesh_is_searched_for_by_a_torque_that_has_the_weight(tm
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_weight_read_by_a_torque_sensor_hides_no_friction_of_the_motor(tmp_path: Path) -> None:
     """Its evidence is ten thousand times as much, in a channel where friction does not show."""
     found = joint(tmp_path, stribeck=0.06, swing=SWING, sensor=True)

@@ -65,6 +65,7 @@ def test_a_runs_mean_is_put_back_and_turns_with_its_way() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_hump_of_friction_beside_friction_that_scatters_is_told(tmp_path: Path, shared: Path) -> None:
     verdict = spiked(tmp_path, shared / "cases" / "open-1", humped).verdict
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "speed")
