@@ -160,10 +160,11 @@ class Puppet:
     async def _talk(self, line: WebSocket) -> None:
         told, at, sent = 0, 0.0, 0
         while not self.server.should_exit:
+            there = len(self.frames)  # those that come later come after the state that was told before them
             if not self.silent and (told != self.revision or time.monotonic() - at > EVERY):
                 told, at = self.revision, time.monotonic()
                 await line.send_text(json.dumps(self.state()))
-            while sent < len(self.frames):
+            while sent < there:
                 await line.send_bytes(self.frames[sent])
                 sent += 1
             await asyncio.sleep(STEP)
