@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from rig.bench import Bench
+from rig.control.stability import Loop
 from rig.control.winding import PER_TICK
 from rig.core.errors import NotReady, UsageError
 from rig.core.operator import Rigging
@@ -112,8 +113,7 @@ def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
 
 def refuse_swinging_up(bench: Bench, procedure: Procedure) -> None:
     """Raises NotReady when the host's loop with the bench's gains would swing up by itself on its declared gear."""
-    margin = loop_margin(bench, procedure)
-    if margin is not None and margin <= 1.0:
+    if swings_up(bench, procedure):
         g, gear, loop = bench.gains, bench.file.gear, bench.file.loop
         raise NotReady(
             f"{procedure.title()}: the position loop would swing up by itself with Kp {g.Kp:g} N·m/rad, Ki {g.Ki:g} "
@@ -123,15 +123,19 @@ def refuse_swinging_up(bench: Bench, procedure: Procedure) -> None:
         )
 
 
-def loop_margin(bench: Bench, procedure: Procedure) -> float | None:
-    """By what the gains of the bench may be multiplied before that; None where the host closes no loop with them: the
-    drive does, or a locked gear is wound up with stiffer ones."""
+def swings_up(bench: Bench, procedure: Procedure) -> bool:
+    """Whether it would; never where the host closes no loop with those gains."""
+    loop = loop_of(bench, procedure)
+    return loop is not None and loop.swings_up(bench.gains)
+
+
+def loop_of(bench: Bench, procedure: Procedure) -> Loop | None:
+    """What the bench's gains close the loop around; None where the drive closes it, or a locked gear is wound up with
+    stiffer gains."""
     if bench.mode is not Mode.TORQUE or procedure.output_locked or not procedure.closes_loop:
         return None
-    from rig.control.stability import Loop  # scipy, which a program that only reads runs need not load
-
     setting = bench.setting(lambda text: None)
-    return Loop(setting.drivetrain, setting.period, bench.file.loop.speed_filter).margin(bench.gains)
+    return Loop(setting.drivetrain, setting.period, bench.file.loop.speed_filter)
 
 
 def margins(bench: Bench, procedure: Procedure) -> list[tuple[str, float, float, str, float]]:

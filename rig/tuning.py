@@ -17,7 +17,7 @@ from rig.core.errors import Exit, NotReady
 from rig.evaluation.step_test import response_of
 from rig.procedures.kinematic_error import KinematicError
 from rig.procedures.step_test import StepTest
-from rig.refusals import loop_margin
+from rig.refusals import swings_up
 from rig.session import Ended, Session
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def no_better(before: Smoothness | str, after: Smoothness) -> bool:
 
 def as_it_was(session: Session, bench: Bench) -> Smoothness | str:
     """The gains there were. They come last: if they trip the guard, nothing is left that a trip would prevent."""
-    if (margin := loop_margin(bench, TRIAL)) is not None and margin <= 1.0:
+    if swings_up(bench, TRIAL):
         return "not tried, the loop would swing up by itself on the declared gear"
     try:
         return _trial(session, bench)

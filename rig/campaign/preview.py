@@ -10,7 +10,7 @@ from rig.control.stability import MOST
 from rig.core.procedure import Procedure
 from rig.core.units import DEG, RPM
 from rig.guard import Guard
-from rig.refusals import TOLD, loop_margin, margins
+from rig.refusals import TOLD, loop_of, margins
 from rig.runfile.room import rows_bytes
 
 
@@ -31,8 +31,8 @@ def plan_lines(bench: Bench, procedure: Procedure) -> list[str]:
             lines.append(f"{what:11s} at most {asked * scale:g} {unit} (clamped), limit {limit * scale:g} {unit}")
             continue
         lines.append(f"{what:11s} {asked * scale:g} of {limit * scale:g} {unit}, {margin(asked / limit)}")
-    if (gain := loop_margin(bench, procedure)) is not None:
-        lines.append(f"gains       {gains_words(gain)}, by the declared gear")
+    if (loop := loop_of(bench, procedure)) is not None:
+        lines.append(f"gains       {gains_words(loop.margin(bench.gains))}, by the declared gear")
     what, left = tightest(bench, procedure)
     said = f"{100 * left:.0f} % of its limit left" if left >= 0 else margin(1 - left)
     lines += [f"tightest    {what}: {said}", f"guard       {guard_words(bench, procedure)}"]

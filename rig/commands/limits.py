@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rig.core.errors import UsageError
+from rig.core.few import few
 from rig.core.nearest import nearest
 from rig.core.procedure import Procedure
 
@@ -73,7 +74,7 @@ def refuse_not_given(procedure: str, called: str, limits: Mapping[str, Any]) -> 
     given = figures_of(procedure)
     for name in limits:
         if given and not is_run_for(procedure, name):
-            raise UsageError(f"--limit: a {called} run gives no figure {name}; expected one of {_some(given)}")
+            raise UsageError(f"--limit: a {called} run gives no figure {name}; expected one of {few(given, TOLD)}")
 
 
 def refuse_absent(have: Sequence[str], limits: Mapping[str, Any]) -> None:
@@ -82,12 +83,7 @@ def refuse_absent(have: Sequence[str], limits: Mapping[str, Any]) -> None:
     for name in limits:
         if have and name not in have:
             like = [one for one in have if one.rpartition("_")[0] == name.rpartition("_")[0]]
-            raise UsageError(f"--limit: this run has no figure {name}; expected one of {_some(like or have)}")
-
-
-def _some(names: Sequence[str]) -> str:
-    """The first of them, and how many more there are."""
-    return f"{', '.join(names[:TOLD])}{f' and {len(names) - TOLD} more' if len(names) > TOLD else ''}"
+            raise UsageError(f"--limit: this run has no figure {name}; expected one of {few(like or have, TOLD)}")
 
 
 def _figure(assignment: str, word: str) -> str:

@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
 
 from rig.core.drivetrain import Drivetrain
 from rig.core.gains import Gains
@@ -28,6 +27,10 @@ class Loop:
     period: float
     filter_time: float
 
+    def swings_up(self, gains: Gains) -> bool:
+        """Whether it does so as it is."""
+        return self.growth(gains) > GROWS
+
     def margin(self, gains: Gains) -> float:
         """By what all of `gains` may be multiplied before the loop swings up; 1 where it does so as it is, at most
         MOST."""
@@ -39,7 +42,11 @@ class Loop:
 
         Friction is left out: it holds a small swing, and not one that has begun.
         """
-        poles = np.linalg.eigvals(self._round_trip(gains, multiple))
+        with np.errstate(over="ignore", invalid="ignore"):
+            trip = self._round_trip(gains, multiple)
+        if not np.isfinite(trip).all():  # gains beyond any number
+            return float("inf")
+        poles = np.linalg.eigvals(trip)
         return float(np.log(max(np.abs(poles).max(), 1e-300)) / self.period)
 
     def _round_trip(self, gains: Gains, multiple: float) -> Array:
@@ -60,6 +67,8 @@ class Loop:
 
     def _plant(self) -> tuple[Array, Array]:
         """What a tick makes of the gear's state (4, 4), and of a torque held meanwhile (4,)."""
+        from scipy.linalg import expm  # which a program that closes no loop need not load
+
         d = self.drivetrain
         reduced = d.J_m * d.J_l / (d.J_m + d.J_l)
         k, c = reduced * d.omega_n**2, 2 * d.zeta * d.omega_n * reduced

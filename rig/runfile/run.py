@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow as pa
 
 from rig.core.errors import UsageError
+from rig.core.few import few
 from rig.core.numbers import number
 from rig.core.rows import stretches
 from rig.runfile import manifest as manifests
@@ -23,6 +24,7 @@ from rig.runfile.samples import Samples, open_samples
 from rig.runfile.text_path import refuse_no_text
 from rig.runfile.thermometer import TEMPERATURE, Thermometer, thermometer
 
+TOLD: Final = 8  # names of columns
 ANGLES: Final = ("theta_m", "theta_l", "counts_m", "counts_l")
 
 
@@ -50,7 +52,7 @@ class Run:
         about = manifests.read(folder)
         run = cls(folder, about, open_samples(folder))
         if not any(run.has(name) or (not run.rows and name in run.channels) for name in ANGLES):
-            there = f"expected at least one of {', '.join(ANGLES)}, it has {_some(run.samples.layout.names)}"
+            there = f"expected at least one of {', '.join(ANGLES)}, it has {few(run.samples.layout.names, TOLD)}"
             raise UsageError(f"{run.samples.path} has no angle: {there}")
         _refuse_backward_time(run)
         return run
@@ -152,14 +154,6 @@ class Run:
     def _about(self, name: str, key: bytes) -> str:
         field: pa.Field = self.samples.layout.field(name)
         return str((field.metadata or {}).get(key, b"").decode(errors="replace"))
-
-
-def _some(names: list[str]) -> str:
-    """A few names in a line."""
-    return (
-        ", ".join(repr(name) for name in names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
-        or "none"
-    )
 
 
 def ratio_of(path: Path, about: Mapping[str, Any]) -> float:

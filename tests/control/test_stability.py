@@ -57,3 +57,10 @@ def test_the_margin_is_what_the_gains_may_be_multiplied_by() -> None:
     assert LOOP.growth(GAINS, margin) > GROWS > LOOP.growth(GAINS, 0.9 * margin)
     assert LOOP.margin(replace(GAINS, Kp=1e9)) == 1.0
     assert LOOP.margin(replace(GAINS, Kp=1e-6, Ki=0.0, Kd=1e-6)) == MOST
+
+
+@pytest.mark.parametrize("Kp", [1e100, 1.7e308])
+@pytest.mark.parametrize("Kd", [0.12, 1.7e308])
+def test_gains_beyond_any_number_swing_up_as_well(Kp: float, Kd: float) -> None:
+    assert LOOP.swings_up(replace(GAINS, Kp=Kp, Kd=Kd))
+    assert not LOOP.swings_up(GAINS)

@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import Any, NoReturn
 
 from rig.core.errors import UsageError
+from rig.core.few import few
 
 _MISSING = object()
 _WORD = {str: "a text in quotes", int: "a whole number", float: "a number", bool: "true or false", dict: "a table"}
@@ -20,8 +21,7 @@ def nearest(wrong: str, valid: Iterable[str], most: int = 12) -> str:
     close = difflib.get_close_matches(wrong.lower(), [n.lower() for n in names], n=1, cutoff=0.6)
     if close:
         return f"did you mean '{next(n for n in names if n.lower() == close[0])}'?"
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return f"there is {', '.join(names[:most])}{more}" if names else "there is none"
+    return f"there is {few(names, most)}"
 
 
 class Section:
