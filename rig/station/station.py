@@ -246,11 +246,11 @@ class Station:
         session.hand = self.person
 
     def disconnect(self) -> None:
-        """Torque off first, then let go of every device. Idempotent."""
+        """Torque off first, then let go of every device. Idempotent; the act it belongs to goes on until it is over."""
         self.stack.close()
         self.session = self.person = self.teller.supervisor = None
-        last, checks = self.status.last_run, self.status.checks
-        self.status = self.teller.status = Status(last_run=last, checks=checks)
+        known = self.status
+        self.status = self.teller.status = Status(job=known.job, last_run=known.last_run, checks=known.checks)
         self.teller.tell()
 
     @property
