@@ -52,6 +52,20 @@ def test_a_dry_run_says_of_a_twin_over_a_wire_that_it_is_simulated(
     assert " on twin-can (SIMULATED)" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("gains", "code", "said"),
+    [
+        ("control.Kp=3.0", 0, "the loop comes to rest with up to 4.35 times these, by the declared gear"),
+        ("control.Kp=60.0", 3, "the loop would swing up by itself, by the declared gear"),
+    ],
+)
+def test_a_dry_run_says_by_what_the_gains_may_be_multiplied(
+    gains: str, code: int, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "kinematic-error", "--dry-run", "--set", gains]) == code
+    assert f"\ngains       {said}\n" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("verb", CATALOGUE)
 def test_every_verb_explains_itself(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as end:

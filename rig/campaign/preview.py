@@ -53,8 +53,8 @@ def guard_words(bench: Bench, procedure: Procedure) -> str:
 def gains_words(gain: float) -> str:
     """By what all gains may be multiplied before the loop swings up by itself."""
     if gain <= 1.0:
-        return "let the loop swing up by itself"
-    return f"{'over ' if gain >= MOST else ''}{gain:.3g} times as large they would let the loop swing up by itself"
+        return "the loop would swing up by itself"
+    return f"the loop comes to rest with {'over' if gain >= MOST else 'up to'} {gain:.3g} times these"
 
 
 def margin(share: float) -> str:

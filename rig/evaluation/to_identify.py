@@ -36,19 +36,26 @@ def open_runs(folders: Sequence[Path], say: Say) -> Opened:
     from rig.analysis.identify.zeros import refuse_other_zeros
     from rig.analysis.motion.held import not_held
 
-    copies: list[str] = []
-    runs = _experiments(once(opened(folders, say), lambda f, why: copies.append(left_out(f.name, why))))
+    said: list[str] = []
+
+    def tell(sentence: str) -> None:
+        said.append(sentence)
+        say(sentence)
+
+    runs = _experiments(once(opened(folders, tell), lambda f, why: tell(left_out(f.name, why))), tell)
     _refuse_mixed(_where(folders), runs)
-    found = [r for one in runs if (r := recording(one)) is not None]
+    read = [(one.name, recording(one)) for one in runs]
+    found = [r for _, r in read if r is not None]
     out = {r.name: why for r in found if r.locked and (why := not_held(r.theta_l))}
     found = [run for run in found if run.name not in out]
     if not found:
         raise DataError("no run here has time and both angles: nothing to identify from")
     refuse_another_ratio(found)
     out |= _odd([run for run in runs if run.name not in out], _where(folders))
-    said = [*copies, *(left_out(name, why) for name, why in out.items())]
-    for sentence in said:
-        say(sentence)
+    for name, why in out.items():
+        tell(left_out(name, why))
+    for name in (name for name, one in read if one is None):
+        tell(f"{name} is no part of the fit: it takes time and both angles, 200 rows of them")
     runs = [run for run in runs if run.name not in out]
     found = [run for run in found if run.name not in out]
     if not found:
@@ -63,16 +70,24 @@ def left_out(name: str, why: str) -> str:
     return f"{name} is left out: {why}"
 
 
-def _experiments(runs: Sequence[Run]) -> list[Run]:
-    """Those that came to their end. Raises DataError where there is none."""
-    found = [
-        run
-        for run in runs
-        if run.manifest.get("status") in ("completed", "imported", None) and run.procedure != "other"
-    ]
+def _experiments(runs: Sequence[Run], tell: Say) -> list[Run]:
+    """Those that came to their end; `tell` hears of the others. Raises DataError where there is none."""
+    found = []
+    for run in runs:
+        if why := _no_experiment(run):
+            tell(left_out(run.name, why))
+        else:
+            found.append(run)
     if not found:
         raise DataError("no completed run of an experiment among these folders: nothing to identify from")
     return found
+
+
+def _no_experiment(run: Run) -> str:
+    """Why nothing is identified from it; "" where something is."""
+    if (status := run.manifest.get("status")) not in ("completed", "imported", None):
+        return f"its status is {status}, and a run that came to its end is asked for"
+    return "its procedure is no experiment (other)" if run.procedure == "other" else ""
 
 
 def _refuse_mixed(name: str, runs: Sequence[Run]) -> None:

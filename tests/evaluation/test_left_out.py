@@ -28,6 +28,24 @@ def test_none_that_can_be_opened_is_refused_as_the_first_one_is(tmp_path: Path) 
         opened([bad], lambda text: None)
 
 
+def test_a_run_that_nothing_is_identified_from_is_named(tmp_path: Path) -> None:
+    folders = [
+        made_run(tmp_path / "good"),
+        made_run(tmp_path / "cut", {"status": "stopped"}),
+        made_run(tmp_path / "jog", {"procedure": "other"}),
+        made_run(tmp_path / "still", table=rows().drop_columns(["theta_l"])),
+    ]
+    told: list[str] = []
+    _, recordings, said = open_runs(folders, told.append)
+    assert [r.name for r in recordings] == ["good"]
+    assert said == tuple(told)
+    assert told == [
+        "cut is left out: its status is stopped, and a run that came to its end is asked for",
+        "jog is left out: its procedure is no experiment (other)",
+        "still is no part of the fit: it takes time and both angles, 200 rows of them",
+    ]
+
+
 def test_a_lock_test_whose_output_turns_is_left_out_in_words(tmp_path: Path) -> None:
     good = made_run(tmp_path / "good")
     turns = made_run(tmp_path / "turns", {"procedure": "stiffness_lock", "conditions": {"output_locked": True}})
