@@ -114,7 +114,7 @@ def _settled(eq: Equations, s: Solution, runs: Sequence[int]) -> tuple[Equations
     the spring that is found: its columns are made with the one that was known before."""
     for _ in range(ROUNDS if any(eq.runs[i].load_unread for i in runs) else 0):
         now = learnt(s)
-        if change(eq.runs[runs[0]].pieces[0].gear, now) < SETTLED:
+        if change(eq.runs[runs[0]].gear, now) < SETTLED:
             break
         eq = eq.knowing(now).leaning_on_it()
         s = fit(design(eq, (), runs))

@@ -131,7 +131,7 @@ def _at_the_floor_alone(
     on what those had made of the gear by then, and it goes with them."""
     if not selected.loud or selected.names or selected.taken:
         return None
-    before, now = (one.eq.runs[0].pieces[0].gear for one in (p, again))
+    before, now = (one.eq.runs[0].gear for one in (p, again))
     if change(before, now) <= OTHER:
         return None
     alone = select(replace(p, held_out=replace(p.held_out, calm=calm)), Found(start, ()), p.split.fitted, covered)

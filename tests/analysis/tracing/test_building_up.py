@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.looks import reversals
 from rig.analysis.tracing.runs import building_up
 from rig.analysis.tracing.runs.building_up import WAYS, builds_up
 from rig.analysis.tracing.runs.campaign import read_campaign
@@ -32,8 +34,20 @@ def test_what_is_done_with_before_the_equations_begin_is_named(tmp_path: Path) -
 
 
 @pytest.mark.slow
+@pytest.mark.long
+def test_lock_tests_alone_show_it_as_well(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_case(Request("single", 11, "paper", "presliding_friction", "dahl", 1.5), tmp_path, "case")
+    assert builds_up(read_campaign(tmp_path / "case").runs) == (False, True)
+    monkeypatch.setattr(reversals, "builds_up", lambda runs: (True,))
+    assert trace(tmp_path / "case").verdict.effects == ("presliding_friction",)
+
+
+@pytest.mark.slow
 def test_friction_that_jumps_builds_up_over_no_way(shared: Path) -> None:
     assert not builds_up(read_campaign(shared / "cases" / "open-1").runs)
+
+
+free: Any = SimpleNamespace(locked=False)
 
 
 def left(*over: float) -> np.ndarray[Any, Any]:
@@ -57,5 +71,12 @@ def test_all_runs_together_have_to_show_one_way(
 ) -> None:
     told = iter([(squares, 2) for squares in runs])
     monkeypatch.setattr(building_up, "_at_reversals", lambda run: next(told))
-    some: list[Any] = [None] * len(runs)
-    assert builds_up(some) is shown
+    assert builds_up([free] * len(runs)) == ((False,) if shown else ())
+
+
+def test_runs_that_turn_and_lock_tests_are_asked_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    shows, hides = left(0.7, 0.4, 0.7), left(1.0, 0.97, 1.0)
+    monkeypatch.setattr(building_up, "_at_reversals", lambda run: (shows if run.locked else hides, 2))
+    held: Any = SimpleNamespace(locked=True)
+    assert builds_up([free, free, held]) == (True,)
+    assert builds_up([free]) == ()

@@ -7,7 +7,8 @@ With θ̃ = θ_m/N − θ_l, the shaft torque T and the paper's θ̃_p      [gho
     R        M where the motor has just turned back, or soon will: friction that builds up over milliradians
     L (N·m)  T + τ_ext = J_l·ω̇_l + B_l·ω_l + τ_cl·sgn ω_l + z
 
-Where it is looked for (runs/look.py) M has g·T/N too: the share by which the motor's torque reads more than the sensor.
+Where they are looked for (runs/look.py) M has g·T/N too, the share by which the motor's torque reads more than the
+sensor, and −δ_m·τ̇_m of a motor's torque that is read δ_m late, or early.
 
 T = r + δ·ṙ of the reading r: every torque sensor has a low-pass of its own, 0.16 ms for one of 1 kHz, and at 500 rpm a
 tenth of a millisecond stands above the noise of L. The torque sensor's zero z wanders from run to run, and c_0 may: how
@@ -88,9 +89,10 @@ BASELINE: Final = (
     "lag",
     "gain",
     "inertia",
+    "lag_m",
 )
 INDEX: Final = {name: i for i, name in enumerate(BASELINE)}
-RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag", "inertia"})
+RATES: Final = frozenset({"damping", "damping_2", "mesh", "J_m", "B_m", "J_l", "B_l", "lag", "inertia", "lag_m"})
 """Coefficients of derivatives by time."""
 WIND_UP: Final = ("compliance", "damping", "damping_2")
 """Of the spring, in A."""
@@ -140,9 +142,11 @@ class Rows:
 
 def is_measured(run: Recording, channel: str) -> bool:
     """Whether this run can say anything in that channel; one angle will do for a torque. Where the motor turns back,
-    what stands in for a torque sensor lacks the load's friction, which turns over later; and of a lock test without one
-    the angles are spent on its torque."""
-    turns = run.procedure != "standstill" and not (run.locked and channel in "RL")
+    what stands in for a torque sensor lacks the load's friction, which turns over later, and a lock test is looked at
+    there only where friction is seen to build up; of a lock test without that sensor the angles are spent on its
+    torque."""
+    silent = run.locked and (channel == "L" or (channel == "R" and not run.look.reversals))
+    turns = run.procedure != "standstill" and not silent
     turns &= not (run.input_locked and channel == "M")  # what holds it takes any torque
     spent = channel == "A" and run.is_wound and not run.look.held_load
     return turns and not spent and NEEDS[channel] <= run.knows
@@ -172,8 +176,8 @@ def again(run: Recording, channel: str, before: Rows) -> Rows:
 
 
 def _own(run: Recording, channel: str, n: int) -> Array:
-    """Columns of M whose coefficients are each run's own, pieces joined, all rows (n, q); of the others none."""
-    if channel == "M" and run.locked:
+    """Columns of M and R whose coefficients are each run's own, pieces joined, all rows (n, q); of the others none."""
+    if channel in "MR" and run.locked:
         return _held_torque(run)
     if channel == "M" and np.isfinite(lowest_answered(run)):
         return answered(run)
@@ -219,6 +223,10 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
         made = [_wound(y, z, piece, f) for (y, z), piece in zip(made, run.pieces, strict=True)]
     if run.look.gain and channel in "MR" and "tau_l" in run.has:
         made = [(y, z | {"gain": f(p.tau_l) / p.ratio}) for (y, z), p in zip(made, run.pieces, strict=True)]
+    if run.look.late_motor and channel in "MR" and "t" in run.has:
+        made = [(y, z | {"lag_m": -f(p.tau_m, 1)}) for (y, z), p in zip(made, run.pieces, strict=True)]
+    if run.added and channel == "L":
+        made = [(y - run.added * f(p.theta_l, 2), z) for (y, z), p in zip(made, run.pieces, strict=True)]
     if run.load_unread and channel in "AM":
         made = [beside_load(channel, *m, p, run) for m, p in zip(made, run.pieces, strict=True)]
     y, z = joined([m[0] for m in made]), joined([np.stack(list(m[1].values()), 1) for m in made])

@@ -29,7 +29,8 @@ def holds(piece: Signals, run: Recording, channel: str) -> Array:
     sliding = smooth(settled(piece).astype(float)) > 1 - 1e-9
     if channel == "R":
         signed = smooth((piece.way != 0).astype(float)) > 1 - 1e-9
-        return np.asarray(inside & ~sliding & (signed | run.look.reversals))
+        near = inside & ~sliding & (signed | run.look.reversals)
+        return np.asarray(near & _has_turned(piece, run) if run.locked else near)
     if channel == "A":
         known = inside & _angle_known(piece, run)
         torque_known = run.locked or "tau_l" in run.knows
@@ -38,9 +39,14 @@ def holds(piece: Signals, run: Recording, channel: str) -> Array:
         sliding &= _load_slides(piece, run)
     else:
         sliding &= smooth(told(piece, run)) > 1 - 1e-9
-        if run.locked:  # friction that builds up begins where no run tells, and so does a loop
-            sliding &= has_turned(piece, run)[smooth.centres(piece.t.size)]
+        if run.locked:
+            sliding &= _has_turned(piece, run)
     return np.asarray(inside & sliding)
+
+
+def _has_turned(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
+    """Rows from the first reversal on: friction that builds up begins where no run tells, and so does a loop."""
+    return has_turned(piece, run)[run.smoother.centres(piece.t.size)]
 
 
 def _load_slides(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
@@ -56,9 +62,9 @@ def _angle_known(piece: Signals, run: Recording) -> npt.NDArray[np.bool_]:
     too, and none before the first reversal. Of one that is held it always is."""
     f = run.smoother
     if run.input_locked:
-        return has_turned(piece, run)[f.centres(piece.t.size)]
+        return _has_turned(piece, run)
     rest = resting(piece.theta_m, piece.dt, run.counts_m, LOCKED if run.locked else FREE)
     if not run.locked:
         return np.asarray(f(rest.astype(float)) < 1e-9, dtype=np.bool_)
     stays = one_a_stay(rest[f.centres(piece.t.size)], round(4 * LOCKED / (f.dt * f.step)))
-    return np.asarray(stays & has_turned(piece, run)[f.centres(piece.t.size)])
+    return np.asarray(stays & _has_turned(piece, run))

@@ -24,7 +24,7 @@ def leaning(eq: Equations, s: Solution, enough: float) -> Equations:
     """With what `s` tells; the very same where that is what they lean on already, to `enough` and what effects take of
     the load to a hundredth."""
     now = learnt(s)
-    moved = change(eq.runs[0].pieces[0].gear, now) >= enough
+    moved = change(eq.runs[0].gear, now) >= enough
     known = eq.knowing(now) if moved else eq
     if not any(run.load_unread for run in eq.runs):
         return known

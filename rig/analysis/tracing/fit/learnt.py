@@ -28,7 +28,7 @@ def learnt(s: Solution) -> Known:
     The zero of the torque sensor is what the load's equation has beside inertia and friction. Where parts of unknown
     weight are taken and left it is their mean, and with it the sign of the torque would be lost.
     """
-    before = s.design.eq.runs[0].pieces[0].gear
+    before = s.design.eq.runs[0].gear
     now = known_of(s.values, before)
     loads = [s.residual(key) for key in s.keys if key[1] == "L"]
     left = float(np.sqrt(np.mean(np.concatenate(loads) ** 2))) if loads else 0.0

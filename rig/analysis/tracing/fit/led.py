@@ -43,7 +43,7 @@ class Model:
 def model_of(s: Solution) -> Model:
     """The model a fit stands for; what it cannot say is as believed before."""
     d, v = s.design, s.values
-    gear = known_of(v, d.eq.runs[0].pieces[0].gear)
+    gear = known_of(v, d.eq.runs[0].gear)
     gear = replace(gear, B_sp=max(gear.B_sp, 0.0))
     terms = tuple((term, s.x[d.place(i)]) for i, term in enumerate(d.terms))
     return Model(gear, max(v["B_l"], 0.0), max(v["tau_cl"], 0.0), v["mesh"], terms)

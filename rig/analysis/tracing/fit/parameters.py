@@ -27,6 +27,7 @@ PLAIN = {
     "tau_cl": "N·m",
     "lag": "s",
     "gain": "1",
+    "lag_m": "s",
 }
 
 ROUNDS = 4  # each leaves a fiftieth of what the one before left
@@ -60,7 +61,7 @@ def baseline(s: Solution, spread: Array | None = None) -> tuple[Parameter, ...]:
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
     out = [_from_the_reading(p, s.design.forward) if p.name == "lag" else p for p in out]
     if any(run.look.inertia for run in s.design.eq.runs):
-        known = s.design.eq.runs[0].pieces[0].gear.J_l + s.value("inertia")
+        known = s.design.eq.runs[0].gear.J_l + s.value("inertia")
         out.append(_of("J_l", known, _unit(c, "inertia"), c, PLAIN["J_l"]))
     out = [_at_its_bound(s, p) if p.name == "lag" and p.value < NO_LAG else p for p in out]
     if seen[INDEX["a1"]]:
@@ -119,7 +120,7 @@ def _order(s: Solution, c: Array, n: int) -> Parameter:
     """Amplitude of an order of θ̃_p, without load where an effect makes it shrink under one."""
     waves = np.array([_unit(c, f"a{n}"), _unit(c, f"b{n}")])
     for i, term in enumerate(s.design.terms):
-        more = term.effect.unloaded(n, s.design.eq.runs[0].pieces[0].gear, term.shape)
+        more = term.effect.unloaded(n, s.design.eq.runs[0].gear, term.shape)
         if more.size:
             waves[:, s.design.place(i)] = more
     both = waves @ s.x
@@ -242,7 +243,7 @@ def of_term(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]] = (
     joint = beside @ c @ beside.T
     k = len(by)
     tau_c = s.value("tau_c") if s.gram[INDEX["tau_c"], INDEX["tau_c"]] > UNSEEN else None
-    return Fit(s.x[place], s.design.terms[i].shape, joint[:k, :k], first.pieces[0].gear, first.ratio, joint, tau_c)
+    return Fit(s.x[place], s.design.terms[i].shape, joint[:k, :k], first.gear, first.ratio, joint, tau_c)
 
 
 def _spread(s: Solution, size: int, i: int, slopes: Sequence[tuple[int, int]]) -> Array:

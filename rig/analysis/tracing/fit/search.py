@@ -193,7 +193,7 @@ def as_fit(s: Solution, term: Term, coefficients: Array) -> Fit:
     """The coefficients of one term, without their covariance."""
     size = coefficients.size + len(term.shape)
     first = s.design.eq.runs[0]
-    return Fit(coefficients, term.shape, np.zeros((size, size)), first.pieces[0].gear, first.ratio)
+    return Fit(coefficients, term.shape, np.zeros((size, size)), first.gear, first.ratio)
 
 
 def still(s: Solution, floors: Mapping[Key, float]) -> bool:

@@ -116,7 +116,7 @@ def _few(d: Design, runs: Sequence[int]) -> tuple[Design, bool]:
 
 def _of_all(s: Solution, eq: Equations, runs: Sequence[int]) -> tuple[Solution, bool]:
     """A solution with all rows of `eq`, and what is known of the gear by now; whether its own columns are the same."""
-    known = eq.knowing(s.design.eq.runs[runs[0]].pieces[0].gear)
+    known = eq.knowing(s.design.eq.runs[runs[0]].gear)
     whole = carrying(known, terms_of(s))
     return replace(s, design=replace(s.design, eq=whole)), whole.rows is eq.rows
 

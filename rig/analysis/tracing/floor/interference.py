@@ -116,7 +116,7 @@ def _are_orders(hz: Array, speed: Array) -> bool:
 
 def _resonance(eq: Equations) -> float:
     """Of the load on the spring, Hz, from what is known of the gear by now."""
-    gear = eq.runs[0].pieces[0].gear
+    gear = eq.runs[0].gear
     return held_frequency(gear.K, gear.J_l) / (2 * np.pi)
 
 

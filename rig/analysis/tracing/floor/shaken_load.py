@@ -34,7 +34,7 @@ def shaken_load(s: Solution, line: Interference) -> Shaken | None:
         return None
     missed = np.array([_missed(s, key, line.columns[key][:, 0]) for key in keys])
     half = Z95 * float(missed.std(ddof=1)) / np.sqrt(missed.size)
-    gear = eq.runs[keys[0][0]].pieces[0].gear
+    gear = eq.runs[keys[0][0]].gear
     of_the_encoder = (held_frequency(gear.K, gear.J_l) / (2 * np.pi * line.frequency_hz)) ** 2
     if abs(missed.mean()) + half > MISSED * min(1.0, of_the_encoder):
         return None

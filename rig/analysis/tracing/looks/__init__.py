@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rig.analysis.tracing.fit.search import Found
-from rig.analysis.tracing.looks import fast, gain, held_load, late_torque, means, narrow, reversals, zeros
+from rig.analysis.tracing.looks import fast, gain, held_load, late_motor, late_torque, means, narrow, reversals, zeros
 from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.selection.selected import Selected
 
-LOOKS = (late_torque, reversals, held_load, gain, zeros, means, fast, narrow)
+LOOKS = (late_motor, late_torque, reversals, held_load, gain, zeros, means, fast, narrow)
 
 
 def second_looks(
@@ -29,6 +29,6 @@ def second_looks(
 
 
 def _as_read(now: Campaign, before: Campaign) -> Campaign:
-    """The campaign that later looks are at: the one that was read anew, where a look brought its torque forward."""
-    late = [c.runs[0].look.late_torque for c in (now, before)]
+    """The campaign that later looks are at: the one in which a look found a torque to be late, or early."""
+    late = [(c.runs[0].look.late_torque, c.runs[0].look.late_motor) for c in (now, before)]
     return now if late[0] != late[1] else before

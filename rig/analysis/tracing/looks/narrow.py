@@ -37,7 +37,7 @@ def wanted(selected: Selected) -> bool:
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """The whole search again through a lower low-pass. It counts where that leaves nothing, hides nothing, and all that
     had a name of the library has it still."""
-    gear = so_far.solution.design.eq.runs[0].pieces[0].gear
+    gear = so_far.solution.design.eq.runs[0].gear
     hz = max(BELOW * held_frequency(gear.K, gear.J_l) / TURN, SLOWEST)
     lower = hz < so_far.fitted_runs[0].smoother.sigma_hz
     if not lower or (again := read_again(so_far.p.campaign, narrow=hz)) is None:

@@ -11,7 +11,7 @@ from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Design, Solution, design, extended, fit
 from rig.analysis.tracing.fit.refine import in_its_law, refine
 from rig.analysis.tracing.fit.search import Found, reduced, settled
-from rig.analysis.tracing.prepared import prepare
+from rig.analysis.tracing.prepared import Prepared, prepare
 from rig.analysis.tracing.runs.building_up import builds_up
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.searched import beside
@@ -27,13 +27,22 @@ BUILDS_UP: Final = PreslidingFriction()
 
 def wanted(selected: Selected) -> bool:
     """Whether friction is seen to build up, and has no name."""
-    return BUILDS_UP.name not in selected.names and builds_up(selected.fitted_runs)
+    return BUILDS_UP.name not in selected.names and bool(builds_up(selected.fitted_runs))
 
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """Friction that builds up beside what stands, with the rows around reversals that no equation holds in where
-    friction jumps."""
-    p = prepare(looking(campaign, [replace(run.look, reversals=True) for run in campaign.runs]), hold_out)
+    friction jumps: of those runs alone in which it is seen to. A motor that turns goes over its way between two rows
+    where one of a lock test takes many."""
+    for locked in builds_up(so_far.fitted_runs):
+        if BUILDS_UP.name not in so_far.names:
+            looks = [replace(run.look, reversals=run.locked is locked) for run in campaign.runs]
+            so_far, found = _looked(so_far, found, prepare(looking(campaign, looks), hold_out))
+    return so_far, found
+
+
+def _looked(so_far: Selected, found: Found, p: Prepared) -> tuple[Selected, Found]:
+    """What stands after a look at the reversals of some runs."""
     runs = p.split.fitted
     covered = reach([p.eq.runs[i] for i in runs])
     d = design(p.eq, so_far.solution.design.terms, runs)

@@ -94,7 +94,8 @@ def _by_load(p: Prepared, key: Key, left: Mapping[Key, Array], model: Model, kee
     smoother, there = p.eq.runs[key[0]].smoother, p.eq.rows[of_load].keep
     torque = np.zeros(there.size)
     torque[there] = left[of_load]
-    made = rung(torque[: keep.size], smoother.dt * smoother.step, model)
+    laden = replace(model, gear=p.eq.runs[key[0]].laden(model.gear))
+    made = rung(torque[: keep.size], smoother.dt * smoother.step, laden)
     return float(np.std(made[keep])) / ARCSEC
 
 

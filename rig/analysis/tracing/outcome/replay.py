@@ -7,6 +7,7 @@ the effects, then a and l of that motion.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -26,7 +27,7 @@ def replayed(run: Recording, model: Model) -> Array | None:
     """θ̃ (rows,) on the smoothed rows of the run's first piece, SPAN s of it at most; None where the turns of motion and
     effects do not settle."""
     piece = shown(run)
-    found = _kinematic_error(piece, model)
+    found = _kinematic_error(piece, replace(model, gear=run.laden(model.gear)))
     return None if found is None else run.smoother(found)
 
 

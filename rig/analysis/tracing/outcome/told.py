@@ -22,12 +22,13 @@ PARAMETERS: Final = {  # symbol, what it is
     "tau_cl": ("τ_cl", "constant friction, load side"),
     "tau_l0": ("z", "zero of the torque sensor"),
     "gain": ("g", "share by which the motor torque reads more than the torque sensor"),
+    "lag_m": ("t_m", "delay of the motor torque's reading; below 0 it is told before it acts"),
     "lag": ("t_r", "delay of the torque sensor's reading"),  # δ is the skew of a channel
 }
 
 EQUATIONS: Final = {  # what is fitted in which equation alone, as long as every sensor is there
     "kinematic error": ("K", "B_sp"),
-    "motor torque": ("J_m", "B_m", "tau_c", "tau_0", "gain"),
+    "motor torque": ("J_m", "B_m", "tau_c", "tau_0", "gain", "lag_m"),
     "shaft torque": ("J_l", "B_l", "tau_cl", "tau_l0", "lag"),
 }
 SAME: Final = 1e-9  # relative: the digits that trace.json has

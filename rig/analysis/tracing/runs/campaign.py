@@ -13,6 +13,7 @@ import numpy as np
 
 from rig.analysis.motion.held import not_held
 from rig.analysis.motion.one_rig import refuse_other_gears
+from rig.analysis.tracing.runs.added import with_discs
 from rig.analysis.tracing.runs.balance import odd_balances
 from rig.analysis.tracing.runs.clocked import rate_by_speed, said_of
 from rig.analysis.tracing.runs.look import FIRST, Look
@@ -99,13 +100,14 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     for sort in (_copies, _odd, _lacking, _same_gear, _odd_torques, _odd_balances):
         runs, odd = sort(runs)
         out += odd
+    runs, discs = with_discs(runs)
     runs, carrying = weighed(runs)
     out += [*carrying, *other_weights(runs)]
     clocked = [r for r in runs if r.clocked]
     unfit += [said_of(len(clocked), len(runs) - len(clocked), hz)] if hz is not None and clocked else []
     part = unfinished(folder)
     said = told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
-    notes = [*([part] if part else []), *unfit, *mixed(opened), *said]
+    notes = [*([part] if part else []), *unfit, *mixed(opened, discs), *said]
     if not runs:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
     runs = _same_sensors(sorted(runs, key=lambda r: (r.start, r.name)))

@@ -51,6 +51,7 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     found += _no_torque(has, moving) + _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
     found += _held_output(moving) + _held_motor(moving)
     found += _gain(moving)
+    found += _late_motor(moving)
     found += _fast(moving)
     return tuple(found)
 
@@ -144,6 +145,14 @@ def _gain(runs: Sequence[Recording]) -> list[str]:
         return []
     return ["Motor torque and shaft torque differ by a gain, which was fitted beside the baseline: which of the two "
             "reads wrongly these runs do not tell; a weight on a known lever does."]  # fmt: skip
+
+
+def _late_motor(runs: Sequence[Recording]) -> list[str]:
+    if not any(run.look.late_motor for run in runs):
+        return []
+    return ["The motor torque is read a fraction of a millisecond before it acts, or after, which was fitted beside "
+            "the baseline: a drive tells the torque that it sets before its current follows, or an average after the "
+            "cycle, and that is no missing effect."]  # fmt: skip
 
 
 def _fast(runs: Sequence[Recording]) -> list[str]:

@@ -12,6 +12,7 @@ class Look:
     reversals: bool = False  # the rows around a reversal too, in which friction has no sure sign
     held_load: bool = False  # of a locked one: its load angle by itself, not the wind-up
     gain: bool = False  # its motor torque beside a gain that all runs share: nobody knows a torque constant well
+    late_motor: bool = False  # its motor torque beside a delay that all runs share
     steady: bool = False  # the mean of its motor torque is no run's own
     rigid: bool = False  # its wind-up is what is believed of the gear: nothing in these runs tells it
     inertia: bool = False  # its torque beside the inertia of the load, which nobody stated and no sensor weighs

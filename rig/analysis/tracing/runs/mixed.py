@@ -11,9 +11,10 @@ from rig.runfile.run import Run
 SAME: Final = 1.01  # times: what two people round differently
 
 
-def mixed(runs: Sequence[Run]) -> list[str]:
-    """What tells that not all of `runs` are of one rig, a sentence each."""
-    return [*_origins(runs), *(said for name in ("K", "J_m", "J_l") if (said := _numbers(name, runs)))]
+def mixed(runs: Sequence[Run], discs: str = "") -> list[str]:
+    """What tells that not all of `runs` are of one rig, a sentence each; `discs` is one on their loads, if any."""
+    numbers = {name: _numbers(name, runs) for name in ("K", "J_m", "J_l")} | ({"J_l": discs} if discs else {})
+    return [*_origins(runs), *(said for said in numbers.values() if said)]
 
 
 def _origins(runs: Sequence[Run]) -> list[str]:

@@ -46,6 +46,16 @@ class Recording(Once):
     load_stated: bool = True  # whether the manifest says what hangs on the output
     load_known: bool = True  # but for friction; else the mean of its shaft torque is its own
     input_locked: bool = False  # `locked` is the motor, and the output is wound up
+    added: float = 0.0  # kg·m² that hung on its load beside what all runs have (runs/added.py)
+
+    @property
+    def gear(self) -> Known:
+        """What is known of the gear, and of the load that all runs have."""
+        return self.laden(self.pieces[0].gear, -1.0)
+
+    def laden(self, known: Known, times: float = 1.0) -> Known:
+        """The same with what hung on the load in this run, so many times."""
+        return replace(known, J_l=known.J_l + times * self.added) if self.added else known
 
     @property
     def knows(self) -> frozenset[str]:
@@ -137,6 +147,7 @@ def _each(pieces: Sequence[Signals], change: Callable[[Signals], Signals]) -> tu
 
 
 def _knowing(piece: Signals, known: Known, run: Recording) -> Signals:
+    known = run.laden(known)
     if run.is_wound:
         return rewound(piece, known)
     if run.look.inertia and known.J_l != piece.gear.J_l:
