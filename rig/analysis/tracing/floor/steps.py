@@ -269,8 +269,9 @@ def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
 def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> float:
     """Share of what is left in A beyond a run's repeats that columns of their own take, in the blocks of `e` that have
     some; of one that has no repeat without them, beyond the floor. What a step does to the torques is no measure: it
-    has another unit, and is hardly seen there."""
-    own = {key: orthonormal(eq.without_offset(key, x)) for key, x in columns.items() if key[1] == "A" and key in e}
+    has another unit, and is hardly seen there. Nor is the mean of a run: it is where its encoders began to count."""
+    e = {key: x - x.mean() for key, x in e.items() if key[1] == "A"}
+    own = {key: orthonormal(x - x.mean(0)) for key, x in columns.items() if key in e}
     taken = {key: float(np.sum((q.T @ e[key]) ** 2)) for key, q in own.items()}
     excess = sum(_excess(eq, e, key, own, work) for key, work in taken.items())
     return sum(taken.values()) / max(excess, 1e-300)
