@@ -32,6 +32,7 @@ class GravityUnbalance(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("order", "overtone")
     loose: ClassVar[tuple[bool, ...]] = (False, False)
     MOST: Final = 0.5  # of the wave, its overtone: a square wave has a third
+    TWICE: Final = 0.65  # of what pulls once, what pulls twice: a mass that swings on a lever had a half (exam 75)
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """A weight on a joint that swings by ten degrees is what most of its torque is; less than a sixth of an output
@@ -64,4 +65,4 @@ class GravityUnbalance(Effect):
         """What pulls twice a turn pulls less than the weight that pulls once: else it is a cable, or a stop, that holds
         the load over some of its turn."""
         sizes = {order: [float(np.hypot(*f.coefficients[:2])) for f in fits if f.shape[0] == order] for order in (1, 2)}
-        return not sizes[2] or sum(sizes[2]) < self.MOST * sum(sizes[1])
+        return not sizes[2] or sum(sizes[2]) < self.TWICE * sum(sizes[1])
