@@ -65,7 +65,7 @@ def test_a_disc_that_is_declared_is_no_effect_and_the_inertia_told_is_without_it
 @pytest.mark.slow
 def test_a_disc_that_the_shaft_torque_knows_nothing_of_is_none(campaign: Path, tmp_path: Path) -> None:
     numbers = sorted({run.declared["J_l"] for run in read_campaign(campaign).runs})
-    other = declared(campaign, tmp_path / "other", lambda J: numbers[0] if J == numbers[1] else numbers[1])
+    other = declared(campaign, tmp_path / "other", lambda J: numbers[0] if numbers[1] == J else numbers[1])
     read = read_campaign(other)
     assert not any(run.added for run in read.runs)
     assert any("it is one number" in note for note in read.notes)

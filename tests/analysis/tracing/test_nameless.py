@@ -19,6 +19,7 @@ from rig.analysis.tracing.nameless.law import LONG
 from rig.analysis.tracing.nameless.readings import TwoConstants, TwoGains
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.trace import trace
+from rig.core.units import ARCSEC
 from rig.model.effect import Effect, Fit, Port
 from tests.analysis.tracing.spiked import Columns, spiked
 from tests.analysis.tracing.test_gains import SOME
@@ -147,6 +148,18 @@ def sensor_curve(c: Columns, began: float) -> Columns:
     return {"tau_l": c["tau_l"] * (1 - 0.01 * share / (1 + share))}
 
 
+def sensor_knee(c: Columns, began: float) -> Columns:
+    beyond = np.maximum(np.abs(c["tau_l"]) - 30.0, 0.0)
+    return {"tau_l": c["tau_l"] - 0.02 * beyond * np.sign(c["tau_l"])}
+
+
+def dent(c: Columns, began: float) -> Columns:
+    """30 arcsec, 0.1 rad wide, once a turn of the motor, and what it takes of the load's torque."""
+    off, wide, high = (c["theta_m"] - 1.0 + np.pi) % (2 * np.pi) - np.pi, 0.1, 30 * ARCSEC
+    bump = high * np.exp(-((off / wide) ** 2) / 2)
+    return {"theta_l": c["theta_l"] - bump, "tau_m": c["tau_m"] + c["tau_l"] * bump * off / wide**2}
+
+
 DIFFER = {two_gains: 2.0, two_constants: 8.0}  # %, between one way and the other
 
 
@@ -205,6 +218,31 @@ def test_a_torque_sensor_that_compresses_is_told_and_no_spring_is_named(shared: 
     assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
     (much,) = [match for law in found.law if (match := re.search(r"at 50 N·m it reads too much by −(\S+) ±", law))]
     assert float(much[1]) == pytest.approx(0.01 * 50 * 1.5625 / 2.5625, rel=0.15)
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_a_torque_sensor_that_gives_way_near_its_end_is_told_with_where(shared: Path, tmp_path: Path) -> None:
+    found = spiked(tmp_path, shared / "cases" / "open-1", sensor_knee)
+    told = CONFOUNDERS["sensor_curve"]
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
+    (much,) = [
+        match for law in found.law if (match := re.search(r"exceeds (\S+) N·m it reads too much by −(\S+) ±", law))
+    ]
+    assert float(much[1]) == pytest.approx(30.0, rel=0.1)
+    assert float(much[2]) == pytest.approx(2.0, rel=0.15)
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_a_dent_in_a_race_is_told_and_no_ripple_is_named_for_its_lever(shared: Path, tmp_path: Path) -> None:
+    still = [
+        run.name for run in (shared / "cases" / "open-1").iterdir() if run.name.startswith(("slow", "load", "lock"))
+    ]
+    found = spiked(tmp_path, shared / "cases" / "open-1", dent, still)  # at speed it would shake the load as well
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert found.verdict.coordinate == "motor_angle"
 
 
 @pytest.mark.slow

@@ -170,8 +170,8 @@ class SensorJump(OfTheTorqueSensor):
 class SensorCurve(OfTheTorqueSensor):
     """The torque sensor is not linear: it reads c_2·T·|T| + c_3·T³ too much, one way as the other      [taghirad1999]
 
-    In a lock test the gear seems to stiffen or to soften; the motor that holds it, and where it turns the load, know of
-    nothing.
+    Or its amplifier gives way near the end of its range: it reads c·(|T| − T_k)·sgn T too much beyond T_k. In a lock
+    test the gear seems to stiffen or to soften; the motor that holds it, and where it turns the load, know of nothing.
     """
 
     name: ClassVar[str] = "sensor_curve"
@@ -179,19 +179,30 @@ class SensorCurve(OfTheTorqueSensor):
     source: ClassVar[str] = "taghirad1999"
     of_reading: ClassVar[str] = "torque"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l", "tau_m"}
+    shape_names: ClassVar[tuple[str, ...]] = ("knee",)
+    loose: ClassVar[tuple[bool, ...]] = (False,)
     AT: Final = 50.0  # N·m, for columns of one size
+    SMOOTH: Final = 0.0  # no knee
+    KNEES: Final = tuple(0.95 * 0.9**k for k in range(15))  # of the largest torque
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One, where there is torque enough to bend a curve."""
-        return when(reach.torque > self.AT / 2)
+        """A curve, and knees, where there is torque enough to bend one."""
+        knees = ((round(share * reach.torque, 1),) for share in self.KNEES)
+        return when(reach.torque > self.AT / 2, (self.SMOOTH,), *knees)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """Two columns in the reading, for what it is off at AT."""
-        share = torque_of(signals) / self.AT
+        """Two columns in the reading, for what it is off at AT; beyond a knee one."""
+        torque = torque_of(signals)
+        if shape[0] != self.SMOOTH:
+            beyond = np.maximum(np.abs(torque) - shape[0], 0.0)
+            return {Port.READS_TAU_L: (np.sign(torque) * beyond)[:, None]}
+        share = torque / self.AT
         return {Port.READS_TAU_L: np.stack([share * np.abs(share), share**3], 1)}
 
     def amount(self, fit: Fit) -> Amount:
-        """At AT, both together."""
+        """At AT, both together; beyond a knee of what exceeds it."""
+        if fit.shape[0] != self.SMOOTH:
+            return sum_of(fit, f"of what exceeds {fit.shape[0]:g} N·m it reads too much by", 100, "%")
         return sum_of(fit, f"at {self.AT:g} N·m it reads too much by", 1, "N·m")
 
 
