@@ -27,7 +27,7 @@ from rig.core.units import TURN
 PLAINLY: Final = 500.0  # nats by which it must be likelier: rows of a sensor with noise of its own are a tenth as many
 ROUNDS: Final = 6  # each leaves a tenth of what the one before left
 SETTLED: Final = 2e-5  # s
-LONGEST: Final = 3.5e-3  # s, a low-pass of 64 Hz, or a mean of 7 ms: what is later is left to be named
+LONGEST: Final = 1.2e-3  # s, a low-pass of 190 Hz, or a mean of 2.4 ms: what is later is left to be named
 
 
 def aligned(campaign: Campaign, hold_out: Sequence[str]) -> tuple[Campaign, Prepared]:

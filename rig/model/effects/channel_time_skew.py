@@ -31,7 +31,7 @@ class ChannelTimeSkew(Effect):
     glosses: ClassVar[Mapping[str, str]] = {
         "skew_theta_l": "δ, by how much the load angle is read too late",
         "skew_theta_m": "δ, by how much the motor angle is read too late",
-        "skew_tau_l": "δ, by how much the shaft torque is read too late",
+        "skew_tau_l": "δ, by how much the shaft torque is read too late, as by a low-pass of its own of √2/(2πδ)",
         "drift_theta_l": "δ', by how much the load angle's lateness grows per second",
         "drift_theta_m": "δ', by how much the motor angle's lateness grows per second",
         "drift_tau_l": "δ', by how much the shaft torque's lateness grows per second",
