@@ -37,15 +37,22 @@ def wanted(selected: Selected) -> bool:
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """All of it once more beside a delay. It counts where the delay is sure and as short as a drive's, all that had a
-    name has it still, and nothing is left, or clearly less."""
+    name has it still, and nothing is left, or of the motor's torque clearly less."""
     looks = [replace(run.look, late_motor=True) for run in so_far.p.campaign.runs]
     p = prepare(looking(so_far.p.campaign, looks), hold_out)
     if not any(_is_late(fit(design(p.eq, terms, p.split.fitted))) for terms in ((), so_far.solution.design.terms)):
         return so_far, found
     other, ranked = searched(p)
-    less = not other.loud or other.left < PLAIN_ENOUGH * so_far.left
+    less = not other.loud or _left(other) < PLAIN_ENOUGH * _left(so_far)
     counts = _is_late(other.solution) and so_far.names <= other.names and less
     return (other, ranked) if counts else (so_far, found)
+
+
+def _left(selected: Selected) -> float:
+    """RMS over floor of the motor's torque in held-out runs."""
+    held_out = selected.p.held_out
+    e = held_out.residuals(selected.solution, selected.held)
+    return held_out.ratio(e, [key for key in e if key[1] == "M"])
 
 
 def _is_late(s: Solution) -> bool:

@@ -57,7 +57,7 @@ def refuse_other_time(t: Array | None, motion: Motion | None) -> None:
 def refuse_sparse(rows: int, dt: float) -> None:
     """Raises UsageError for too few rows, and for such as lie too far apart or too close."""
     if rows < FEWEST:
-        raise UsageError(f"it has {rows} rows, expected at least {FEWEST}")
+        raise UsageError(f"it has {rows} row{'s' * (rows != 1)}, expected at least {FEWEST}")
     if not DENSEST <= dt <= SPARSEST:  # NaN too
         raise UsageError(f"it has one row every {dt:.4g} s, expected one every {DENSEST:g} to {SPARSEST:.1g} s")
 
