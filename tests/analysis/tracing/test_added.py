@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.runs.added import _is_shown
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.trace import trace
 from tests.blind import rig as rigs
@@ -69,3 +70,13 @@ def test_a_disc_that_the_shaft_torque_knows_nothing_of_is_none(campaign: Path, t
     read = read_campaign(other)
     assert not any(run.added for run in read.runs)
     assert any("it is one number" in note for note in read.notes)
+
+
+@pytest.mark.parametrize(
+    ("disc", "more", "shown"),
+    [(0.3, 0.29, True), (0.3, 0.02, False), (0.3, -0.3, False), (0.3, None, True), (700.0, None, False)],
+)
+def test_a_disc_is_one_that_a_torque_shows_or_nothing_speaks_against(
+    disc: float, more: float | None, shown: bool
+) -> None:
+    assert _is_shown(disc, more, least=0.7) is shown

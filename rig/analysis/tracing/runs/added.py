@@ -16,6 +16,7 @@ import numpy as np
 from rig.analysis.tracing.runs.recording import Recording
 
 SAME: Final = 1.01  # times: what two people round differently
+MOST: Final = 3.0  # times what all have: a larger disc is believed only where a torque shows it
 SLIDES: Final = 1 - 1e-9  # of a direction that is low-passed
 FEWEST: Final = 50  # rows
 READ: Final = frozenset({"theta_l", "tau_l", "t"})
@@ -32,7 +33,7 @@ def with_discs(runs: Sequence[Recording]) -> tuple[list[Recording], str]:
     bare = [run for run, J in zip(runs, known, strict=True) if SAME * least >= J]
     added = {J for J in known if SAME * least < J}
     shown = {J: _more(bare, [run for run, other in zip(runs, known, strict=True) if other == J]) for J in added}
-    if any(more is not None and abs(more) < abs(more - (J - least)) for J, more in shown.items()):
+    if not all(_is_shown(J - least, more, least) for J, more in shown.items()):
         return list(runs), ""
     made = [replace(run, added=J - least if J in added else 0.0) for run, J in zip(runs, known, strict=True)]
     said = ", ".join(f"{J - least:.4g}" for J in sorted(added))
@@ -41,6 +42,12 @@ def with_discs(runs: Sequence[Recording]) -> tuple[list[Recording], str]:
         f"The manifests declare more J_l in {len(named)} runs ({', '.join(named)[:80]}) than the {least:.4g} kg·m² of "
         f"the others: {said} kg·m² more is taken for a disc that was added there, and the J_l told is without it."
     )
+
+
+def _is_shown(disc: float, more: float | None, least: float) -> bool:
+    """Whether `more` inertia is nearer to that of the `disc` than to none; of one that nothing shows, whether it is no
+    slip of the decimal point."""
+    return disc < MOST * least if more is None else abs(more - disc) < abs(more)
 
 
 def _more(bare: Sequence[Recording], others: Sequence[Recording]) -> float | None:
@@ -64,7 +71,7 @@ def _of_one(run: Recording) -> tuple[float, float] | None:
     f = run.smoother
     parts = [(f(p.tau_l + p.tau_ext), f(p.theta_l, 2), f(p.theta_l, 1), f(p.way)) for p in run.pieces]
     y, alpha, omega, way = (np.concatenate(column) for column in zip(*parts, strict=True))
-    slides = np.abs(way) > SLIDES
+    slides = (np.abs(way) > SLIDES) & np.isfinite(y + alpha)
     z = np.stack([alpha, omega, way, np.ones_like(way)], 1)[slides]
     if len(z) < FEWEST:
         return None
