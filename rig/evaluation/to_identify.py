@@ -61,6 +61,7 @@ def open_runs(folders: Sequence[Path], say: Say) -> Opened:
     if not found:
         raise DataError(f"no run is left to identify from: {'; '.join(said)[:300]}")
     refuse_other_zeros(found)
+    said += _mixed(runs)
     said += [f"{run.name}: samples.parquet {why}" for run in runs if (why := changed(run.path, run.manifest))]
     return Opened(runs, found, (*said, *(f"{run.name}: {note}" for run in runs for note in notes(run.misfits))))
 
@@ -107,6 +108,13 @@ def _odd(runs: Sequence[Run], name: str) -> dict[str, str]:
     from rig.analysis.tracing.runs.campaign import odd_runs
 
     return odd_runs(runs, name)
+
+
+def _mixed(runs: Sequence[Run]) -> list[str]:
+    """What tells that they are not of one rig, or not of one load: the fit has one number for all."""
+    from rig.analysis.tracing.runs.mixed import mixed
+
+    return mixed(runs)
 
 
 def _where(folders: Sequence[Path]) -> str:

@@ -46,6 +46,12 @@ def test_a_run_that_nothing_is_identified_from_is_named(tmp_path: Path) -> None:
     ]
 
 
+def test_runs_of_two_loads_are_told_of(tmp_path: Path) -> None:
+    folders = [made_run(tmp_path / name, {"declared": {"J_l": J}}) for name, J in (("bare", 0.8), ("laden", 1.2))]
+    _, _, said = open_runs(folders, lambda text: None)
+    assert [one for one in said if "declare J_l from 0.8 (bare) to 1.2 (laden)" in one]
+
+
 def test_a_lock_test_whose_output_turns_is_left_out_in_words(tmp_path: Path) -> None:
     good = made_run(tmp_path / "good")
     turns = made_run(tmp_path / "turns", {"procedure": "stiffness_lock", "conditions": {"output_locked": True}})
