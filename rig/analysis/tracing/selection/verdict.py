@@ -15,6 +15,7 @@ from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bent_sensor import SPRINGS, is_the_sensors
 from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
+from rig.analysis.tracing.rest.gains_of_locks import gains_of_locks
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
@@ -70,6 +71,7 @@ def _decided(asked: Asked) -> Conclusion:
     if not asked.loud:
         inside = None if names else hidden(p, s, asked.after, asked.floors)
         elsewhere = inside or _drifting(p, s, names, asked.floors) or _uneven(p, s, names, asked.floors)
+        elsewhere = elsewhere or (None if names else _weakening(p, s))
         return elsewhere or _jumped(p, names) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
     where = _where(p, s, asked.after, asked.floors, asked.one)
     return _with_a_remainder(asked, where) or _unknown(asked, where)
@@ -189,6 +191,15 @@ def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[
         return None
     verdict = Verdict(Status.UNKNOWN, names, (), where, None, None, drift.sentence())
     return Conclusion(verdict, None, (where,), along(where))
+
+
+def _weakening(p: Prepared, s: Solution) -> Conclusion | None:
+    """Nothing is above the floor, but the torque constant is another one in each lock test; None where it is not."""
+    gains = gains_of_locks(s, [*p.split.fitted, *p.split.held_out])
+    if gains is None:
+        return None
+    verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, gains.sentence())
+    return Conclusion(verdict, None, ("time",), along("time"))
 
 
 def _jumped(p: Prepared, names: tuple[str, ...]) -> Conclusion | None:
