@@ -55,7 +55,7 @@ def test_the_campaign_these_are_made_from_can_be_read(tmp_path: Path) -> None:
     ("change", "said"),
     [
         (first(0), "it has 0 rows, expected at least 50"),
-        (first(1), "it has 1 rows, expected at least 50"),
+        (first(1), "it has 1 row, expected at least 50"),
         (first(10), "it has 10 rows, expected at least 50"),
         (times("t", 1000.0), "it has one row every 2 s, expected one every 1e-06 to 0.2 s"),
         (lambda c: {name: x[::500] for name, x in c.items()}, "it has 10 rows"),

@@ -43,6 +43,6 @@ def test_of_a_lock_test_without_a_torque_sensor_the_angles_are_spent_on_the_torq
         input_locked=False,
         knows=MEASURED - {"tau_l"},
         is_wound=True,
-        look=SimpleNamespace(held_load=False),
+        look=SimpleNamespace(held_load=False, reversals=False),
     )
     assert "".join(channel for channel in "AMRL" if is_measured(run, channel)) == "M"

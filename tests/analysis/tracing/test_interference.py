@@ -23,7 +23,7 @@ class Run:
     """Just what the search looks at."""
 
     locked = False
-    pieces = (SimpleNamespace(gear=SimpleNamespace(K=7160.0, J_l=0.8)),)  # 15.1 Hz
+    gear = SimpleNamespace(K=7160.0, J_l=0.8)  # 15.1 Hz
 
     def __init__(self, turning: float) -> None:
         self.turning = turning

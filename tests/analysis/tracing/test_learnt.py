@@ -17,7 +17,7 @@ FITTED = dict.fromkeys(BASELINE, 0.0) | {"compliance": 1e-4, "J_m": 2e-3, "J_l":
 
 @pytest.mark.parametrize(("left", "zero"), [(0.1, 8.6), (7.6, KNOWN.torque_zero)])
 def test_a_load_that_is_another_one_from_time_to_time_tells_no_zero(left: float, zero: float) -> None:
-    run = SimpleNamespace(pieces=(SimpleNamespace(gear=KNOWN),), has={"theta_l"}, load_unread=False)
+    run = SimpleNamespace(gear=KNOWN, has={"theta_l"}, load_unread=False)
     design = SimpleNamespace(eq=SimpleNamespace(runs=(run,), noise=SimpleNamespace(sigma={"L": 0.3})))
     s: Any = SimpleNamespace(
         design=design, values=FITTED, keys=((0, "A"), (0, "L")), residual=lambda key: np.full(100, left)
@@ -36,7 +36,7 @@ def test_a_load_that_is_another_one_from_time_to_time_tells_no_zero(left: float,
 def test_a_spring_far_from_the_declared_one_is_none_where_nobody_read_the_torque(
     unread: bool, declared: dict[str, float], stiffness: float
 ) -> None:
-    run = SimpleNamespace(pieces=(SimpleNamespace(gear=KNOWN),), has={"theta_l"}, load_unread=unread, declared=declared)
+    run = SimpleNamespace(gear=KNOWN, has={"theta_l"}, load_unread=unread, declared=declared)
     design = SimpleNamespace(eq=SimpleNamespace(runs=(run,), noise=SimpleNamespace(sigma={"L": 0.3})))
     s: Any = SimpleNamespace(design=design, values=FITTED, keys=(), residual=lambda key: np.zeros(1))
     found = learnt(s).K

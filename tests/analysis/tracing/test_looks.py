@@ -61,6 +61,7 @@ def test_where_several_elements_cannot_be_told_one_bristle_is_tried(
     nothing: Any = None
     p = SimpleNamespace(split=SimpleNamespace(fitted=()), eq=SimpleNamespace(runs=()))
     for name, fake in {
+        "builds_up": lambda runs: (False,),
         "prepare": lambda *a: p,
         "looking": lambda *a: nothing,
         "reach": lambda *a: SimpleNamespace(slowest=1.0, rate=250.0, ratio=50.0),
@@ -77,7 +78,7 @@ def test_where_several_elements_cannot_be_told_one_bristle_is_tried(
     }.items():
         monkeypatch.setattr(reversals, name, fake)
     so_far = selected()
-    so_far.solution = SimpleNamespace(design=SimpleNamespace(terms=()))
+    so_far.solution, so_far.fitted_runs = SimpleNamespace(design=SimpleNamespace(terms=())), ()
     found: Any = SimpleNamespace(ranking=())
     other, _ = reversals.taken(so_far, found, SimpleNamespace(runs=()), ())  # type: ignore[arg-type]
     assert other.names == {BUILT.name}
@@ -87,7 +88,8 @@ def test_where_several_elements_cannot_be_told_one_bristle_is_tried(
 @pytest.mark.parametrize("late", [0.0, 1e-4])
 def test_later_looks_are_at_the_torque_as_it_was_brought_forward(late: float, monkeypatch: pytest.MonkeyPatch) -> None:
     def campaign(name: str, late_torque: float) -> Any:
-        return SimpleNamespace(name=name, runs=[SimpleNamespace(look=SimpleNamespace(late_torque=late_torque))])
+        look = SimpleNamespace(late_torque=late_torque, late_motor=False)
+        return SimpleNamespace(name=name, runs=[SimpleNamespace(look=look)])
 
     def standing(of: Any) -> Any:
         return SimpleNamespace(p=SimpleNamespace(campaign=of))

@@ -14,9 +14,7 @@ GEAR = SimpleNamespace(K=16_000.0, J_l=1.0)  # 20.1 Hz
 
 
 def selected(*names: str, loud: bool = True, has: frozenset[str] = ALL - {"theta_l"}, locked: bool = False) -> Any:
-    run = SimpleNamespace(
-        has=has, locked=locked, smoother=SimpleNamespace(sigma_hz=36.0), pieces=[SimpleNamespace(gear=GEAR)]
-    )
+    run = SimpleNamespace(has=has, locked=locked, smoother=SimpleNamespace(sigma_hz=36.0), gear=GEAR)
     p = SimpleNamespace(campaign="campaign", floors={}, held_out=SimpleNamespace(residuals=lambda s, held: {}))
     s = SimpleNamespace(design=SimpleNamespace(eq=SimpleNamespace(runs=[run])))
     return SimpleNamespace(names=set(names), loud=loud, fitted_runs=[run], solution=s, held=None, p=p)

@@ -68,4 +68,4 @@ def test_an_effect_of_the_gear_may_be_as_large_as_it_likes(rng: np.random.Genera
 def test_every_law_that_says_of_which_reading_it_is_acts_there(name: str) -> None:
     effect = CONFOUNDERS[name].effect
     port = {"": None, "tau_m": Port.READS_TAU_M, "torque": Port.READS_TAU_L}[effect.of_reading]
-    assert port is None or set(effect.columns(motion(), ())) == {port}
+    assert port is None or set(effect.columns(motion(), (0.0,) * len(effect.shape_names))) == {port}

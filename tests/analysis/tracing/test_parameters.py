@@ -69,7 +69,7 @@ def test_a_housing_that_gives_way_is_not_in_the_stiffness_of_the_gear(
     at, key, size = np.array([*(INDEX[n] for n in names), len(BASELINE)]), (0, "A"), len(BASELINE) + 1
     rows: Any = {key: SimpleNamespace(keep=np.ones(waves(0).size, bool), own=np.zeros((waves(0).size, 0)))}
     gear = SimpleNamespace(J_l=0.8, K=K)
-    run: Any = SimpleNamespace(**{**vars(RUN), "pieces": (SimpleNamespace(gear=gear),), "ratio": 50.0})
+    run: Any = SimpleNamespace(**{**vars(RUN), "gear": gear, "ratio": 50.0})
     eq = Equations((run,), rows, Noise({"A": 1e-8}, {"A": 1.0}, {"A": np.inf}))
     y = waves(0) / K - waves(1) * B_SP / K**2 + support * (waves(0) + Swung.WITHIN)
     y = y + 1e-8 * rng.standard_normal(y.size)

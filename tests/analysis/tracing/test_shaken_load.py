@@ -40,7 +40,7 @@ def found(
             locked=False,
             knows={"tau_l"} if reads else set(),
             smoother=SimpleNamespace(sigma_hz=SIGMA),
-            pieces=[SimpleNamespace(gear=gear)],
+            gear=gear,
         )
         for _ in range(runs)
     ]

@@ -19,7 +19,7 @@ BEFORE = Known(K=7000.0, B_sp=5.0, J_m=1e-3, J_l=0.8, kinematic_error=FourierSer
 def solution(J_l: float, has: set[str], declared: dict[str, float]) -> Any:
     x = np.full(len(BASELINE), 1e-4)
     x[INDEX["J_l"]] = J_l
-    run = SimpleNamespace(has=has, declared=declared, pieces=(SimpleNamespace(gear=BEFORE),), load_unread=False)
+    run = SimpleNamespace(has=has, declared=declared, gear=BEFORE, load_unread=False)
     eq = SimpleNamespace(runs=(run,), noise=SimpleNamespace(sigma={"L": 0.1}))
     values = dict(zip(BASELINE, x, strict=True))
     return SimpleNamespace(x=x, values=values, keys=(), design=SimpleNamespace(eq=eq))

@@ -27,7 +27,7 @@ def with_discs(runs: Sequence[Recording]) -> tuple[list[Recording], str]:
     torque tells that it is one."""
     declared = [run.declared.get("J_l") for run in runs]
     known = [J for J in declared if J is not None]
-    if len(known) < len(runs) or max(known) <= SAME * min(known):
+    if not known or len(known) < len(runs) or max(known) <= SAME * min(known):
         return list(runs), ""
     least = min(known)
     bare = [run for run, J in zip(runs, known, strict=True) if SAME * least >= J]
