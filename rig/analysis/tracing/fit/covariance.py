@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import stdtrit  # of scipy.stats the import takes half a second
 
+from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.model import Solution, evened, inverse
 from rig.core.quantiles import Z95
 from rig.model.effect import Array
@@ -83,3 +84,11 @@ def _clusters(s: Solution) -> Iterator[tuple[Array, Array]]:
                 gram[np.ix_(at, at)] += weight * (z[some].T @ z[some])
                 score[at] += weight * (z[some].T @ e[some])
             yield gram, score
+
+
+def is_sure(s: Solution, name: str, least: float, times: float) -> bool:
+    """Whether a coefficient of the baseline, in its unit, is larger than `least` and so many `times` half its 95 %
+    interval."""
+    at = INDEX[name]
+    half = Z95 * float(np.sqrt(max(covariance(s)[at, at], 0.0)))
+    return max(least, times * half) < abs(s.value(name))

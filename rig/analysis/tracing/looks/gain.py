@@ -6,10 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-import numpy as np
-
-from rig.analysis.tracing.fit.channels import INDEX
-from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.covariance import is_sure
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import prepare
@@ -17,7 +14,6 @@ from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, confounders_in
 from rig.analysis.tracing.selection.selected import Selected
-from rig.core.quantiles import Z95
 
 LEAST: Final = 0.005  # less is a torque sensor's own drift, or a loss
 MOST: Final = 0.2  # more is another motor, or another unit
@@ -48,6 +44,4 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
 
 
 def _is_a_gain(s: Solution) -> bool:
-    at = INDEX["gain"]
-    half = Z95 * float(np.sqrt(max(covariance(s)[at, at], 0.0)))
-    return max(LEAST, SURE * half) < abs(s.value("gain")) < MOST
+    return is_sure(s, "gain", LEAST, SURE) and abs(s.value("gain")) < MOST

@@ -11,10 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-import numpy as np
-
-from rig.analysis.tracing.fit.channels import INDEX
-from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.covariance import is_sure
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import prepare
@@ -22,7 +19,6 @@ from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
-from rig.core.quantiles import Z95
 
 LEAST: Final = 2e-5  # s; less is the jitter of a loop
 MOST: Final = 1e-3  # s, a cycle of a drive; what is later is left to be found
@@ -56,6 +52,4 @@ def _left(selected: Selected) -> float:
 
 
 def _is_late(s: Solution) -> bool:
-    at = INDEX["lag_m"]
-    half = Z95 * float(np.sqrt(max(covariance(s)[at, at], 0.0)))
-    return max(LEAST, SURE * half) < abs(s.value("lag_m")) < MOST
+    return is_sure(s, "lag_m", LEAST, SURE) and abs(s.value("lag_m")) < MOST

@@ -13,9 +13,9 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.runs.mixed import SAME
 from rig.analysis.tracing.runs.recording import Recording
 
-SAME: Final = 1.01  # times: what two people round differently
 MOST: Final = 3.0  # times what all have: a larger disc is believed only where a torque shows it
 SLIDES: Final = 1 - 1e-9  # of a direction that is low-passed
 FEWEST: Final = 50  # rows
