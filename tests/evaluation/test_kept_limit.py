@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from rig.analysis.findings.result import Result
 from rig.commands.limits import limits_of
 from rig.evaluation.run import analyse_folder
@@ -22,6 +24,7 @@ def notes(result: Result) -> list[str]:
     return [sentence for sentence in result.cannot if sentence.startswith("Judged by the limit")]
 
 
+@pytest.mark.slow
 def test_a_run_is_judged_again_by_the_limit_it_was_judged_by_until_told_otherwise(tmp_path: Path) -> None:
     folder = made_run(tmp_path / "run")
     assert analysed(folder, "peak-to-peak=60 arcsec").verdict == "FAIL"
@@ -48,6 +51,7 @@ def test_a_limit_of_the_manifest_is_its_own_and_can_be_lifted(tmp_path: Path) ->
     assert analysed(folder).verdict == "MEASURED"
 
 
+@pytest.mark.slow
 def test_what_a_result_holds_for_limits_may_be_anything(tmp_path: Path) -> None:
     folder = made_run(tmp_path / "run")
     odd: list[Any] = [7, [], {NAME: []}, {NAME: {"upper": [1]}}, {NAME: float("nan")}]

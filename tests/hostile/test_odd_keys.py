@@ -21,6 +21,7 @@ KEYS = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", KEYS)
 def test_a_campaign_with_one_odd_key_is_read_or_refused_in_a_sentence(key: str, tmp_path: Path) -> None:
     table, _, name = key.rpartition(".")

@@ -23,6 +23,7 @@ def bearing(c: Columns, began: float) -> Columns:
     return {"theta_l": c["theta_l"] + 1.5e-5 * np.cos(CAGE * c["theta_m"]) + 1.2e-5 * np.cos(BALLS * c["theta_m"])}
 
 
+@pytest.mark.slow
 def test_a_bearing_of_two_orders_is_two_curves_and_nothing_is_left(tmp_path: Path, shared: Path) -> None:
     found = spiked(tmp_path / "two", shared / "cases" / "open-1", bearing, RUNS)
     assert (found.verdict.status, found.verdict.coordinate) == (Status.UNKNOWN, "motor_angle")
