@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.core import numbers
+from rig.runfile.manifest import digest_of
 from rig.runfile.misfits import misfits, misfits_of_ours, notes, usable
 
 UNREADABLE = "unreadable"  # the status of a run whose manifest is damaged
@@ -37,6 +38,7 @@ class Row:
     conditions: Mapping[str, Any] = field(default_factory=dict)
     problem: str = ""  # what is wrong with its manifest, in words
     doubt: str = ""  # why its figures are not to be believed, in words
+    digest: str = ""  # SHA-256 of its samples
 
     @property
     def simulated(self) -> bool:
@@ -112,6 +114,7 @@ def row_of(folder: Path, about: Mapping[str, Any]) -> Row:
         campaign=text(campaign.get("uid")) if isinstance(campaign, dict) else "",
         conditions=conditions if isinstance(conditions, dict) else {},
         problem=text(" ".join(notes(wrong))),
+        digest=digest_of(about),
     )
 
 

@@ -38,6 +38,11 @@ class Read(NamedTuple):
         """As the row has it."""
         return self.row.path
 
+    @property
+    def digest(self) -> str:
+        """As the row has it."""
+        return self.row.digest
+
 
 def runs(root: Path | str, filter: Filter = ALL, twice: Twice = passed_over) -> list[Row]:
     """The runs under `root`, in folders by date or side by side, that pass the filter, in its order; `twice` is told

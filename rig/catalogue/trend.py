@@ -18,7 +18,7 @@ from rig.catalogue.scan import quickly_doubted, runs
 from rig.catalogue.scan import row as row_in
 from rig.catalogue.scatter import SHARE, Scatter, scatter
 from rig.core.errors import UsageError
-from rig.runfile.copies import known_by
+from rig.runfile.copies import known_by, measured_once
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,9 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
     Raises UsageError without such a folder, without a run in it, or when none of its runs has the figure.
     """
     copies: dict[Path, str] = {}
+    again: dict[Path, str] = {}
     found = runs(root, Filter(gear=gear), lambda folder, why: copies.update({folder: why}))
+    found = list(measured_once(found, lambda folder, why: again.update({folder: why})))
     kept: dict[tuple[Point, str], list[tuple[Row, Figure]]] = defaultdict(list)
     counted: list[Row] = []
     doubts: list[str] = []
@@ -123,6 +125,7 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
         refuse_unknown(figure, _seen(found), _unanalysed(root, found))
     numbers = _numbers(counted)
     series = tuple(_series(at, members, numbers) for (at, _), members in kept.items())
+    copies |= {path: why for path, why in again.items() if figure_of(row_in(path), names_of(figure)) is not None}
     told = (*doubts, *(f"{folder.name} is left out: {why}" for folder, why in copies.items()))
     return Trend(figure, series, _left_out(found, figure) - len(counted) - len(doubts), told)
 

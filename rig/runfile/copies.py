@@ -1,18 +1,19 @@
-"""A run that lies in several folders, copied or by a link: taken once, for it is no repeat of itself."""
+"""A run that lies in several folders, copied or by a link: taken once, for it is no repeat of itself. Nor are two whose
+samples are the same to the last bit, as those of the twin are that began with one seed: they share their noise."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import Final, Protocol, TypeVar
 
 Twice = Callable[[Path, str], object]
 """Told of a folder that is left out, and why."""
 
 
 class Known(Protocol):
-    """A run, however much of it was read; `uid` is "" where its manifest says none."""
+    """A run, however much of it was read; `uid`, and the SHA-256 of its samples, "" where its manifest says none."""
 
     @property
     def uid(self) -> str: ...
@@ -20,8 +21,12 @@ class Known(Protocol):
     @property
     def path(self) -> Path: ...
 
+    @property
+    def digest(self) -> str: ...
+
 
 T = TypeVar("T", bound=Known)
+NOISE: Final = "which no repeat's are (the twin makes other noise with --seed N)"
 
 
 def passed_over(folder: Path, why: str) -> None:
@@ -74,4 +79,15 @@ def once(found: Sequence[T], twice: Twice = passed_over) -> list[T]:
     """Each run once, its original where that is among them, in the order in which they were first found."""
     seen = Seen(twice)
     taken = {known_by(run): run for run in originals_first(found) if seen.is_new(run)}
-    return [taken[known] for known in dict.fromkeys(map(known_by, found))]
+    return list(measured_once([taken[known] for known in dict.fromkeys(map(known_by, found))], twice))
+
+
+def measured_once(found: Iterable[T], twice: Twice = passed_over) -> Iterator[T]:
+    """Those whose samples are not to the last bit those of one before; `twice` is told of the others."""
+    first: dict[str, str] = {}
+    for run in found:
+        name = first.setdefault(run.digest, run.path.name) if run.digest else run.path.name
+        if not run.digest or name == run.path.name:
+            yield run
+        else:
+            twice(run.path, f"its samples are those of {name} to the last bit, {NOISE}")

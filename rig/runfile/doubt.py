@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.core.errors import DataError, HdrigError, said_of
+from rig.runfile.manifest import entry
 from rig.runfile.remains import SAMPLES
 
 RESULT = "result.json"
@@ -20,7 +21,7 @@ def doubt(folder: Path, about: Mapping[str, Any]) -> str:
     for name in (RESULT, SAMPLES):
         if _is_another(folder / name, _sha256(about, name)):
             return f"{name} is not what it was when the run was closed or analysed (see hdrig verify)"
-    there, said = (folder / SAMPLES).exists(), _entry(about, SAMPLES)
+    there, said = (folder / SAMPLES).exists(), entry(about, SAMPLES)
     if (there and said.get("sha256")) or not (there or said):  # a folder of results alone promises no samples
         return ""
     return _unreadable(folder)
@@ -32,7 +33,7 @@ def quick_doubt(folder: Path, about: Mapping[str, Any]) -> str:
         result, samples = (folder / RESULT).stat(), (folder / SAMPLES).stat()
     except OSError:
         return doubt(folder, about)
-    size = _entry(about, SAMPLES).get("bytes", samples.st_size)
+    size = entry(about, SAMPLES).get("bytes", samples.st_size)
     return doubt(folder, about) if samples.st_mtime > result.st_mtime or size != samples.st_size else ""
 
 
@@ -78,10 +79,5 @@ def _is_another(path: Path, sha256: str | None) -> bool:
 
 
 def _sha256(about: Mapping[str, Any], name: str) -> str | None:
-    said = _entry(about, name).get("sha256")
+    said = entry(about, name).get("sha256")
     return said if isinstance(said, str) else None
-
-
-def _entry(about: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    entry = about.get("files", {}).get(name)
-    return entry if isinstance(entry, Mapping) else {}

@@ -12,6 +12,7 @@ from typing import Any
 
 from rig.core.errors import HdrigError, UsageError
 from rig.core.regular import regular
+from rig.runfile.remains import SAMPLES
 
 SCHEMA = "hdrig.run/1"
 NAME = "manifest.json"
@@ -60,6 +61,19 @@ def read(folder: Path) -> Manifest:
     found = {key: value for key, value in found.items() if value is not None}
     _refuse_other_kinds(path, found)
     return found
+
+
+def entry(about: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """What a manifest says of a file of its folder."""
+    files = about.get("files")
+    said = files.get(name) if isinstance(files, Mapping) else None
+    return said if isinstance(said, Mapping) else {}
+
+
+def digest_of(about: Mapping[str, Any]) -> str:
+    """SHA-256 of the samples; "" where the manifest does not say it."""
+    said = entry(about, SAMPLES).get("sha256")
+    return said if isinstance(said, str) else ""
 
 
 def contents(path: Path) -> bytes:

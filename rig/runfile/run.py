@@ -69,6 +69,11 @@ class Run:
         return said if isinstance(said, str) else ""
 
     @property
+    def digest(self) -> str:
+        """SHA-256 of its samples; "" where the manifest does not say it."""
+        return manifests.digest_of(self.manifest)
+
+    @property
     def rows(self) -> int:
         """Samples in the run."""
         return self.samples.rows

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from rig.analysis import analyse
 from rig.analysis.findings.result import Verdict
@@ -76,5 +77,24 @@ def test_an_eccentric_encoder_of_the_output_is_no_angle_in_degrees() -> None:
     theta_l = theta_m / 50 - 4e-5 * np.cos(2 * theta_m)
     assert come_again_in_degrees(theta_m, theta_l + 3e-3 * np.cos(theta_m / 50), 50.0) is None
     assert come_again_in_degrees(theta_m * DEGREES, theta_l * DEGREES, 50.0)
-    few = slice(0, 1000)  # five turns of the motor
-    assert come_again_in_degrees(theta_m[few] * DEGREES, theta_l[few] * DEGREES, 50.0) is None
+    for turns, told in ((3.0, False), (4.0, True)):
+        few = slice(0, int(turns * 200))
+        assert bool(come_again_in_degrees(theta_m[few] * DEGREES, theta_l[few] * DEGREES, 50.0)) is told
+    short = slice(0, int(4.6 * 50 * 200))  # of the output 4.6 turns, in which its order is least unlike one of degrees
+    assert come_again_in_degrees(theta_m[short], theta_l[short] + 3e-3 * np.cos(theta_m[short] / 50), 50.0) is None
+
+
+def test_one_angle_in_degrees_is_not_called_both() -> None:
+    theta_m = np.linspace(0.0, 2 * np.pi * 8, 8000)
+    theta_l = theta_m / 50 - 4e-5 * np.cos(2 * theta_m)
+    assert come_again_in_degrees(theta_m * DEGREES, theta_l, 50.0) is None
+
+
+@pytest.mark.parametrize(("name", "factor"), [("tau_m", 1000.0), ("t", 1000.0)])
+def test_what_no_gear_has_is_told_of_a_foreign_run(name: str, factor: float, shared: Path) -> None:
+    run = Run.open(shared / "cases" / "open-1" / "load_40nm_1")
+    columns = {n: x for n in ("t", "theta_m", "theta_l", "tau_m", "tau_l") if (x := run.column(n)) is not None}
+    about = {"schema": "hdrig.run/1", "procedure": "other", "gear": {"ratio": 50}}
+    found = analyse(MadeRun(columns | {name: columns[name] * factor}, about))
+    assert [s for s in found.cannot if s.startswith(f"The unit of {name} may be another one: ")]
+    assert not [s for s in analyse(MadeRun(columns, about)).cannot if "may be another one" in s]

@@ -21,18 +21,20 @@ FASTEST: Final = 15_000.0  # rpm of the motor, mean: strain-wave gears end at 14
 ROWS: Final = 200_000  # looked at, those first: a unit is the same all along, and a run may have a day of rows
 
 
-TURNS: Final = 6.0  # of the motor at least, were it in degrees: fewer do not tell its orders from an output's
+TURNS: Final = 3.5  # of the motor at least, were it in degrees: of fewer an output's orders make half as well
 ORDERS: Final = 6  # of a turn that are asked for
 BENDS: Final = 4  # a trend, and what changes with the way
 WAVES: Final = 20_000  # rows that are enough for them
 MOST: Final = 0.9  # of θ̃, which comes again every turn in degrees
-LITTLE: Final = 2e-3  # of it, which does so every turn in rad: of any gear a kinematic error of some per cent is in it
+LITTLE: Final = 0.01  # of it, which does so every turn in rad: of any gear a kinematic error of some per cent is in it
 
 
 def come_again_in_degrees(theta_m: Array, theta_l: Array, ratio: float) -> str | None:
     """Why both angles (n,) seem to be in degrees, by the waves of θ̃ = θ_m/N − θ_l: those of every gear come again with
     the motor's turn. None where they do not, or too few turns are there to tell."""
     if np.ptp(theta_m) / 360.0 < TURNS:
+        return None
+    if abs(np.ptp(theta_l) * ratio / np.ptp(theta_m) - 1) > UNLIKE:  # one of them alone
         return None
     few = slice(None, None, max(1, theta_m.size // WAVES))
     theta, error = theta_m[few], theta_m[few] / ratio - theta_l[few]

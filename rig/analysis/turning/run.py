@@ -23,7 +23,7 @@ from rig.analysis.smoothness.measure import smoothness as smoothness_of
 from rig.analysis.turning.spectrum import add_orders
 from rig.analysis.turning.speed import add_speed_figures
 from rig.analysis.turning.torsion_words import add_torsion
-from rig.analysis.turning.units import wrong_unit
+from rig.analysis.turning.units import unlikely, wrong_unit
 from rig.analysis.turning.weight import other_weight
 from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
@@ -51,6 +51,7 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         found.sentence = "No kinematic error was computed."
         found.reject(wrong)
         return
+    found.cannot += unlikely(run, motion)
     evenness = _judge_smoothness(found, smoothness_of(motion, strokes, reference, speed)) if slow else ()
     if motion.theta_l is None:
         found.cannot.append(NO_LOAD)

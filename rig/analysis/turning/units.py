@@ -1,17 +1,19 @@
-"""Was the motor angle recorded in the unit it is declared in? The speed that was commanded tells."""
+"""Was the motor angle recorded in the unit it is declared in? The speed that was commanded tells. And are time and
+torques those of any gear?"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from rig.analysis.findings.result import Array
-from rig.analysis.motion.source import Motion
+from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.strokes import Stroke
 from rig.analysis.smoothness.measure import nominal_rpm
 from rig.core.numbers import number
+from rig.core.plausible import PERIOD, TORQUE
 from rig.core.units import DEG, TURN
 
 FACTORS = (
@@ -42,3 +44,22 @@ def wrong_unit(motion: Motion, strokes: list[Stroke], reference: Array | None, c
                 f"commanded, a factor of {what}? Expected {'s' if whose == 't' else 'rad'}."
             )
     return ""
+
+
+def unlikely(run: Source, motion: Motion) -> Iterator[str]:
+    """What of time and torques no gear has, a sentence each: what goes by them is another, what goes by angles is not.
+    The same bounds refuse a file at import."""
+    apart = float(np.median(np.diff(motion.t))) if motion.t is not None and motion.t.size > 1 else PERIOD[1]
+    if not PERIOD[0] <= apart <= PERIOD[1]:
+        yield (
+            f"The unit of t may be another one: {apart:.3g} s between rows, expected {PERIOD[0]:g} to {PERIOD[1]:g} s; "
+            "speeds and durations go by it."
+        )
+    for name, limit in TORQUE.items():
+        tau = run.column(name)
+        peak = float(np.nanmax(np.abs(tau))) if tau is not None and np.isfinite(tau).any() else 0.0
+        if peak > limit:
+            yield (
+                f"The unit of {name} may be another one: it reaches {peak:.4g} N·m, expected below {limit:g} N·m; "
+                "stiffness, friction and what hangs on the output go by it."
+            )

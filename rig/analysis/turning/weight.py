@@ -23,11 +23,13 @@ def other_weight(run: Source, motion: Motion, strokes: list[Stroke], tau_l: Arra
     seen = -sum(ways) / 2
     if run.conditions.get("output_locked") or not is_another(seen, declared):
         return ""
-    said = f"{declared:+g}" if declared else "0"
+    said = "the manifest says nothing of it"
+    if run.conditions.get("tau_ext") is not None:
+        said = f"the manifest says {declared:+g} N·m" if declared else "the manifest says 0 N·m"
     return (
         f"What hangs on the output: the torque sensor shows {seen:+.2f} N·m in the mean of both directions (positive "
-        f"drives the load forward), the manifest says {said} N·m: a weight that nobody declared, gravity of a load off "
-        "its axis, or a sensor that was not tared; this run cannot say which."
+        f"drives the load forward), {said}: a weight that nobody declared, gravity of a load off its axis, a sensor "
+        "that was not tared, or another unit of its torque; this run cannot say which."
     )
 
 

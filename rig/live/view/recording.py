@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 from pathlib import Path
@@ -38,7 +39,7 @@ def record(folder: Path, path: Path) -> None:
         canvas.close()
         os.replace(part, path)
     except OSError as error:
-        raise UsageError(f"{path} cannot be written: {error.strerror}") from error
+        raise UsageError(f"{path} cannot be written: {error.strerror}; name another place with --out") from error
     except (Gone, Stalled):  # the SDK does not say why
         free = shutil.disk_usage(path.parent).free
         raise UsageError(
@@ -46,7 +47,8 @@ def record(folder: Path, path: Path) -> None:
             "when it stopped; name another place with --out"
         ) from None
     finally:
-        part.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # a place that cannot be written was told of
+            part.unlink(missing_ok=True)
 
 
 def draw(run: Run, said: About, canvas: Canvas) -> None:

@@ -12,19 +12,18 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.core.errors import UsageError
+from rig.core.plausible import PERIOD, TORQUE
 from rig.runfile.importing.convert import Converted
 from rig.runfile.importing.mapping import Mapping
 from rig.runfile.importing.timing import EPOCH_END
 
 Array = npt.NDArray[Any]
 
-PERIOD = (9e-6, 0.5)  # s: above 111 Hz stamped in s and read as ms; up to 2 kHz stamped in ms and read as s
 SPAN = 3.2e7  # s: a year; one wrong stamp at the end of a run is not a gap
 ANGLE = 1e9  # rad: beyond it a float64 no longer holds a fiftieth of an arcsec
 SPEED = 20_000.0  # rpm: above the input speed of any strain-wave gear on sale (14 000 rpm, size 5)
 OTHER = 2.0  # times: a speed that was stated is another one when nearly all rows turn so much faster or slower
 WINDOW = 50  # rows over which a speed is taken: stamps jitter, so two neighbours say little
-TORQUE = {"tau_m": 300.0, "tau_l": 20_000.0, "tau_ask": 300.0, "tau_applied": 300.0}  # N·m: twice a size 100's peak
 BALANCE = 100.0  # tau_l over N·tau_m, both rms, of a turning gear: a lossless one has 1
 STIFFNESS = (50.0, 5e6)  # N·m/rad: half the softest (size 5) to several times the stiffest (size 100)
 CLEAR = 0.9  # correlation of torque and wind-up from which their slope is a stiffness
