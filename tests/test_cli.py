@@ -120,6 +120,12 @@ def test_no_word_is_offered_for_no_can_bus_that_would_be_taken_for_the_name_of_o
             ["amplitude_deg = 9rad: expected a number in deg"],
         ),
         (["run", "kinematic-error", "--with", "frequency=0,01"], ["frequency = 0,01: expected a decimal point, 0.01"]),
+        (["run", "kinematic-error", "--with", "amplitude_deg=1,440"], ["1.440, or no comma between thousands, 1440"]),
+        (
+            ["run", "standstill", "--set", "loop.rate=-1"],
+            ["loop.rate = -1.0 Hz: expected greater than or equal to 10 Hz"],
+        ),
+        (["run", "standstill", "--set", "limits.torque=5 Nm"], ["limits.torque = '5 Nm': expected a number in N·m"]),
         (["run", "jog", "--clock", "virtual", "--bench", "twin-can", "--dry-run"], ["virtual clock exists only on"]),
         (
             ["run", "jog", "--set", "gear.N=-50"],

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.core import numbers
-from rig.runfile.manifest import digest_of
+from rig.runfile.manifest import digest_of, of_no_use
 from rig.runfile.misfits import misfits, misfits_of_ours, notes, usable
 
 UNREADABLE = "unreadable"  # the status of a run whose manifest is damaged
@@ -113,7 +113,7 @@ def row_of(folder: Path, about: Mapping[str, Any]) -> Row:
         operator=text(about.get("operator")),
         campaign=text(campaign.get("uid")) if isinstance(campaign, dict) else "",
         conditions=conditions if isinstance(conditions, dict) else {},
-        problem=text(" ".join(notes(wrong))),
+        problem=text(" ".join([*(f"{why}." for why in of_no_use(folder, about)), *notes(wrong)])),
         digest=digest_of(about),
     )
 

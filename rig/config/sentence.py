@@ -16,6 +16,8 @@ WORDS = {
     "bool_type": "true or false",
     "dict_type": "a table",
 }  # what pydantic calls by Python's names
+BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+NUMBERS = ("float_type", "float_parsing", "int_type", "int_from_float")
 
 
 def sentence(error: ValidationError, model: type[BaseModel]) -> str:
@@ -37,7 +39,10 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
             return f"{key} = {_shown(first['input'])}: expected a table of keys such as {keys}"
         case kind:
             expected = WORDS.get(kind) or _expected(first["msg"], first["input"])
-            return f"{key} = {_shown(first['input'])}{_unit_note(model, path)}: expected {expected}"
+            unit = _unit_note(model, path)
+            of_value = unit if type(first["input"]) in (int, float) else ""  # text may have one of its own
+            of_bound = unit if kind in BOUNDS else " in" * bool(unit) + unit if kind in NUMBERS else ""
+            return f"{key} = {_shown(first['input'])}{of_value}: expected {expected}{of_bound}"
 
 
 def _shown(given: object) -> str:

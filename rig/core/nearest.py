@@ -5,9 +5,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+ALIKE = 0.65  # of the letters, in their order: with less, nonsense was taken for chosen_speed
+
 
 def nearest(wrong: str, valid: Iterable[str]) -> str:
     """ "did you mean 'x'?", or the list of what exists."""
     names = sorted(valid)
-    close = difflib.get_close_matches(wrong, names, n=1, cutoff=0.5)
+    close = difflib.get_close_matches(wrong, names, n=1, cutoff=ALIKE)
     return f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"

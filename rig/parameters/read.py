@@ -25,6 +25,7 @@ WORDS = {
 
 NUMBER: Final = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 DECIMAL_COMMA: Final = re.compile(r"[-+]?\d+,\d+")
+THOUSANDS: Final = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
 ANOTHER: Final = re.compile(r",\s*(\w+)\s*=")
 WITH_MORE: Final = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 
@@ -64,9 +65,9 @@ def _refuse_unit(kind: type[Any], field: Field[Any], raw: Any) -> None:
     if not isinstance(raw, str) or not isinstance(field.default, float | int) or isinstance(field.default, bool):
         return
     if DECIMAL_COMMA.fullmatch(raw.strip()):
-        raise UsageError(
-            f"{field.name} = {raw.strip()[:60]}: expected a decimal point, {raw.strip().replace(',', '.')}"
-        )
+        point, none = (raw.strip().replace(",", instead) for instead in (".", ""))
+        meant = f", or no comma between thousands, {none}" if THOUSANDS.fullmatch(raw.strip()) else ""
+        raise UsageError(f"{field.name} = {raw.strip()[:60]}: expected a decimal point, {point}{meant}")
     if (found := WITH_MORE.fullmatch(raw.strip())) is None:
         return
     unit = next(one.unit for one in told(kind) if one.name == field.name)

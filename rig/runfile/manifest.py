@@ -10,7 +10,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from rig.core.errors import HdrigError, UsageError
+from rig.core.errors import HdrigError, UsageError, said_of
+from rig.core.numbers import number
 from rig.core.regular import regular
 from rig.runfile.remains import SAMPLES
 
@@ -74,6 +75,37 @@ def digest_of(about: Mapping[str, Any]) -> str:
     """SHA-256 of the samples; "" where the manifest does not say it."""
     said = entry(about, SAMPLES).get("sha256")
     return said if isinstance(said, str) else ""
+
+
+def ratio_of(folder: Path, about: Mapping[str, Any]) -> float:
+    """gear.ratio of the manifest `about` of the run in `folder`. Raises UsageError when it is none."""
+    gear = about.get("gear")
+    gear = gear if isinstance(gear, dict) else {}
+    found = number(gear.get("ratio"))
+    if not found > 0.0:
+        said = f"is {_short(gear['ratio'])}" if "ratio" in gear else "is missing"
+        raise UsageError(f"{folder / NAME}: gear.ratio {said}, expected a number above 0")
+    return found
+
+
+def procedure_of(folder: Path, about: Mapping[str, Any]) -> str:
+    """The procedure's name, as files are called. Raises UsageError when it is none."""
+    procedure = about.get("procedure")
+    if not isinstance(procedure, str) or not procedure:
+        said = f"is {_short(procedure)}" if "procedure" in about else "is missing"
+        raise UsageError(f"{folder / NAME}: procedure {said}, expected its name")
+    return procedure.replace("-", "_")
+
+
+def of_no_use(folder: Path, about: Mapping[str, Any]) -> list[str]:
+    """Why the run in `folder` cannot be analysed, by its manifest alone."""
+    said = []
+    for need in (ratio_of, procedure_of):
+        try:
+            need(folder, about)
+        except UsageError as error:
+            said.append(said_of(folder, error))
+    return said
 
 
 def contents(path: Path) -> bytes:

@@ -12,11 +12,11 @@ from rig.core.ring import Ring
 from rig.runfile import archive, manifest
 from rig.runfile.events import EventLog, mend_events, read_events
 from rig.runfile.finalise import Closed, StepHook, finalise, is_closed, refuse_stranger
+from rig.runfile.manifest import ratio_of
 from rig.runfile.process import Process, lives
 from rig.runfile.rebuild import rebuild
 from rig.runfile.remains import ring_of, to_recover_from
 from rig.runfile.restore import restore, samples_as_closed
-from rig.runfile.run import ratio_of
 from rig.runfile.samples import open_samples
 
 FAULT = "fault: "  # how the event of a trip begins: the state it leads to

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from datetime import datetime
@@ -15,7 +14,6 @@ import pyarrow as pa
 
 from rig.core.errors import UsageError
 from rig.core.few import few
-from rig.core.numbers import number
 from rig.core.rows import stretches
 from rig.runfile import manifest as manifests
 from rig.runfile.columns import Array
@@ -37,8 +35,8 @@ class Run:
         self.manifest = usable(manifest)
         self.misfits = (*misfits(manifest), *misfits_of_ours(manifest), *mistyped(manifest))
         self.samples = samples
-        self.ratio = ratio_of(path, manifest)
-        self.procedure = _procedure(path, manifest)
+        self.ratio = manifests.ratio_of(path, manifest)
+        self.procedure = manifests.procedure_of(path, manifest)
 
     @classmethod
     def open(cls, path: Path | str) -> Run:
@@ -159,24 +157,6 @@ class Run:
     def _about(self, name: str, key: bytes) -> str:
         field: pa.Field = self.samples.layout.field(name)
         return str((field.metadata or {}).get(key, b"").decode(errors="replace"))
-
-
-def ratio_of(path: Path, about: Mapping[str, Any]) -> float:
-    """gear.ratio of the manifest `about` of the run at `path`. Raises UsageError when it is none."""
-    gear = about.get("gear")
-    ratio = gear.get("ratio") if isinstance(gear, dict) else None
-    found = number(ratio)
-    if not found > 0.0:
-        said = json.dumps(ratio)[:60]
-        raise UsageError(f"{path / manifests.NAME}: gear.ratio is {said}, expected a number above 0")
-    return found
-
-
-def _procedure(path: Path, about: Mapping[str, Any]) -> str:
-    procedure = about.get("procedure")
-    if not isinstance(procedure, str) or not procedure:
-        raise UsageError(f"{path / manifests.NAME}: procedure is {json.dumps(procedure)[:60]}, expected its name")
-    return procedure.replace("-", "_")
 
 
 def _refuse_backward_time(run: Run) -> None:

@@ -27,6 +27,22 @@ ANYTHING: st.SearchStrategy[Any] = st.recursive(
 )
 
 
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"gear": {"serial": "SN1"}}, "gear.ratio is missing, expected a number above 0"),
+        ({"gear": {"ratio": "50"}}, 'gear.ratio is "50", expected a number above 0'),
+        ({"procedure": 7}, "procedure is 7, expected its name"),
+    ],
+)
+def test_a_run_that_cannot_be_analysed_is_listed_with_what_its_manifest_lacks(
+    change: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    run(tmp_path, "2026-11-18", **change)
+    (row,) = runs(tmp_path)
+    assert row.problem == f"manifest.json: {said}."
+
+
 def test_filters_take_gear_procedure_verdict_status_and_days(tmp_path: Path) -> None:
     a = run(tmp_path, "2026-11-18", gear={"serial": "SN2"}, verdict="FAIL")
     b = run(tmp_path, "2026-11-19", 1, procedure="friction", status="stopped")

@@ -390,7 +390,7 @@ def test_a_journal_with_fewer_rows_does_not_replace_the_samples(tmp_path: Path) 
 
 @pytest.mark.parametrize(
     ("about", "sentence"),
-    [({"gear": {}}, "gear.ratio is null"), ({}, "has no samples: neither samples.parquet nor a journal")],
+    [({"gear": {}}, "gear.ratio is missing"), ({}, "has no samples: neither samples.parquet nor a journal")],
 )
 def test_a_folder_with_nothing_to_recover_is_left_as_it_is(
     tmp_path: Path, about: dict[str, object], sentence: str

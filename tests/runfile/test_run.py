@@ -220,11 +220,11 @@ def test_a_channel_of_the_table_that_holds_words_is_refused(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"gear": {}}, "gear.ratio is null, expected a number above 0"),
+        ({"gear": {}}, "gear.ratio is missing, expected a number above 0"),
         ({"gear": {"ratio": "50"}}, 'gear.ratio is "50", expected a number above 0'),
         ({"gear": {"ratio": -50}}, "gear.ratio is -50, expected a number above 0"),
         ({"gear": 50}, "gear is 50, expected an object"),
-        ({"procedure": None}, "procedure is null, expected its name"),
+        ({"procedure": None}, "procedure is missing, expected its name"),
         ({"schema": "lerobot/2"}, 'schema "lerobot/2", expected "hdrig.run/1"'),
     ],
 )

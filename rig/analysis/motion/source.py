@@ -100,14 +100,14 @@ def _angle(run: Source, side: str, notes: list[str]) -> Array | None:
 
 
 def _left_out(columns: Mapping[str, Array | None], gone: int) -> str:
-    """How many rows are not used, `gone` in all, which of the channels as they were read has no finite value in most
+    """How many rows are not used, `gone` in all, which of the channels as they were read has no usable value in most
     of them, and what else there may be."""
     holes = {name: ~np.isfinite(c) for name, c in columns.items() if c is not None}
     name = max(holes, key=lambda n: np.count_nonzero(holes[n]))
     missing, size = holes[name], holes[name].size
     count, first, last = np.count_nonzero(missing), int(missing.argmax()), size - 1 - int(missing[::-1].argmax())
     where = f"row {first}" if first == last else f"{count} of them (row {first} to {last})"
-    reasons = [f"{name} has no finite value in {where}"] if count else []
+    reasons = [f"{name} has no usable value in {where}"] if count else []
     if count < gone:
         reasons.append("an angle was missing, stale or frozen, or the guard had tripped")
     return f"{gone} of {size} rows left out: {'; else '.join(reasons)}."

@@ -68,7 +68,7 @@ class Show(Observer):
     def bench(self, bench: Bench, clock: str) -> None:
         """Which rig, and whether it is one."""
         name, gear = bench.file.name, bench.file.gear
-        self.tell("bench", bench=name, simulated=bench.simulated, clock=clock, ratio=gear.N, gear=gear.serial)
+        self.tell("bench", bench=name, simulated=bench.simulated or None, clock=clock, ratio=gear.N, gear=gear.serial)
 
     def say(self, text: str) -> None:
         """A sentence for the person."""

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.core.numbers import number, stated
-from rig.runfile.manifest import read
-from rig.runfile.run import ratio_of
+from rig.runfile.manifest import ratio_of, read
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+os.environ.setdefault("RUST_LOG", "off")  # read when it is imported: its raw lines stood around our sentences
 import rerun as rr
 import rerun.blueprint as rrb
 from rerun.blueprint import encodings

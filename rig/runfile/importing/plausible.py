@@ -27,6 +27,7 @@ WINDOW = 50  # rows over which a speed is taken: stamps jitter, so two neighbour
 BALANCE = 100.0  # tau_l over N·tau_m, both rms, of a turning gear: a lossless one has 1
 STIFFNESS = (50.0, 5e6)  # N·m/rad: half the softest (size 5) to several times the stiffest (size 100)
 CLEAR = 0.9  # correlation of torque and wind-up from which their slope is a stiffness
+LEAST, USUAL, ALONE = 20, 95.0, 100.0  # rows; per cent of the steps; times those: what nobody turns there and back
 RATE = 0.1  # share by which a speed channel may differ from what its angle does: filters and lags of a drive
 RATIO = 0.003  # share by which the measured ratio may differ once the angles span much
 WIND_UP = np.radians(0.3)  # rad of load angle that torsion and errors may add over the span: 18 arcmin were measured
@@ -173,15 +174,29 @@ def _ratio(run: Converted, mapping: Mapping) -> str:
     if abs(measured / declared - 1) <= RATIO + WIND_UP / span:
         run.notes.append(f"{said}; gear.ratio = {declared:g}")
         return ""
-    if measured < 0:
+    if alone := _alone(run):
+        return f"{said}; expected {declared:g} (gear.ratio): {alone}"
+    factor = max(abs(measured) / declared, declared / max(abs(measured), 1e-300))
+    fits = factor < 1 + RATIO + WIND_UP / span
+    if measured < 0 and fits:
         sign = mapping.channels["theta_l"].sign
         said += f", so one angle runs the wrong way: set channels.theta_l.sign = {-sign} (it must follow the motor)"
-    factor = max(abs(measured) / declared, declared / max(abs(measured), 1e-300))
     hint = next((f"; they differ by about {text}" for f, text in HINTS if abs(factor / f - 1) < 0.05), "")
-    expected = (
-        "" if measured < 0 and factor < 1 + RATIO + WIND_UP / span else f"; gear.ratio = {declared:g} does not fit"
-    )
-    return said + expected + hint
+    return said + ("" if measured < 0 and fits else f"; gear.ratio = {declared:g} does not fit") + hint
+
+
+def _alone(run: Converted) -> str:
+    """Which reading of an angle is far off those before and behind it, and makes a ratio of its own; "" without one."""
+    for name in ("theta_m", "theta_l"):
+        theta = run.values(name)
+        step = np.diff(theta) if theta is not None else np.zeros(0)
+        if step.size < LEAST:
+            continue
+        there_and_back = np.where(step[:-1] * step[1:] < 0, np.minimum(np.abs(step[:-1]), np.abs(step[1:])), 0.0)
+        at = int(np.argmax(there_and_back))
+        if there_and_back[at] > ALONE * float(np.percentile(np.abs(step), USUAL)):
+            return f"row {at + 2} of {name} lies {step[at]:+.4g} rad off the row before it, and the next one is back"
+    return ""
 
 
 def _torque(run: Converted, mapping: Mapping) -> str:

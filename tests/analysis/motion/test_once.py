@@ -42,7 +42,7 @@ def test_rows_that_miss_an_angle_are_counted_beside_those_that_stand_there_twice
     assert found is not None
     assert found.notes[:2] == (
         "5 of 5005 rows have time and angles of the row before: taken once.",
-        "3 of 5005 rows left out: theta_m has no finite value in 3 of them (row 100 to 102).",
+        "3 of 5005 rows left out: theta_m has no usable value in 3 of them (row 100 to 102).",
     )
 
 

@@ -62,7 +62,7 @@ def test_a_value_that_is_none_is_said_to_be_infinite_or_too_large(wrong: dict[in
     theta_m[list(wrong)] = list(wrong.values())
     told = " ".join(analyse(replace(made, columns={**made.columns, "theta_m": theta_m})).cannot)
     assert said in told
-    assert "theta_m has no finite value in" in told
+    assert "theta_m has no usable value in" in told
 
 
 def test_a_gap_is_named_with_its_channel_and_rows_and_the_figure_is_that_of_the_rest() -> None:
@@ -72,7 +72,7 @@ def test_a_gap_is_named_with_its_channel_and_rows_and_the_figure_is_that_of_the_
     result = analyse(replace(made, columns={**made.columns, "theta_l": theta_l}))
     said = " ".join(result.cannot)
     assert (
-        f"55000 of {theta_l.size} rows left out: theta_l has no finite value in 55000 of them (row 5000 to 59999)"
+        f"55000 of {theta_l.size} rows left out: theta_l has no usable value in 55000 of them (row 5000 to 59999)"
         in said
     )
     assert "gap of 55 s at t = 5.0 s" in said

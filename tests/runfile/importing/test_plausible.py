@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -24,6 +26,25 @@ def test_an_angle_the_wrong_way_round_is_told_with_the_sign_to_flip(foreign: For
     assert "theta_m turns -49.9965 times as far as theta_l" in said
     assert "set channels.theta_l.sign = -1" in said
     assert "does not fit" not in said
+
+
+def test_the_sign_is_no_cure_for_another_gear(foreign: Foreign) -> None:
+    mapping = MAPPING.replace("sign = -1", "sign = 1").replace("ratio = 50", "ratio = 80")
+    said = foreign.refused(foreign.file(), mapping)
+    assert "theta_m turns -49.9965 times as far as theta_l" in said
+    assert "gear.ratio = 80 does not fit" in said
+    assert "sign" not in said
+
+
+def test_one_reading_far_off_is_named_and_no_sign(foreign: Foreign) -> None:
+    def struck(load: Any) -> Any:
+        out = np.array(load)
+        out[300] += 1e5
+        return out
+
+    said = foreign.refused(foreign.file(with_column("load", struck)))
+    assert "expected 50 (gear.ratio): row 301 of theta_l lies " in said
+    assert "sign" not in said
 
 
 def test_degrees_read_as_radians_show_in_the_ratio(foreign: Foreign) -> None:
