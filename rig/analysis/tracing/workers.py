@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import functools
 import gc
 import mmap
 import os
@@ -66,6 +67,25 @@ def meanwhile(of: Callable[[], R]) -> Iterator[Callable[[], R]]:
             return made[0] if 0 in made else of()
 
         yield result
+
+
+def first_that(of: Callable[[T], R | None], items: Sequence[T]) -> R | None:
+    """The first that `of` makes of one of `items`, in their order; None where it makes none of any. While one is tried
+    a copy tries the next: only whether there is something comes back, for what is made may hold half of all there is.
+    """
+    for at in range(0, len(items), 2):
+        one, *more = items[at : at + 2]
+        with contextlib.ExitStack() as stack:
+            others = [stack.enter_context(meanwhile(functools.partial(_makes, of, other))) for other in more]
+            if (made := of(one)) is not None:
+                return made  # the copy goes with the stack
+            if any(other() for other in others):
+                return of(more[0])
+    return None
+
+
+def _makes(of: Callable[[T], R | None], item: T) -> bool:
+    return of(item) is not None
 
 
 def one_heap() -> None:

@@ -113,14 +113,16 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
 
     everything = laws()
     assert everything - laws(backwards=0.02) == {"sector_drag"}
-    assert everything - laws(fast_backwards=0.02) == {"uneven_drag"}  # slow runs alone go both ways: any drag does so
+    # slow runs alone go both ways: any drag does so
+    assert everything - laws(fast_backwards=0.02) == {"uneven_drag", "thrown_sensor"}
     assert everything - laws(turned_both_ways=0.1) == {"sector_drag"}  # of a turn: a weight does as much one way
     assert everything - laws(pulled=0.02) == {"two_gains", "two_constants", "sensor_jump", "even_spring"}
     assert everything - laws(torque=20.0) == {"sensor_curve"}
     assert everything - laws(weights=1) == {"oval_pulley", "sensor_scale"}
     drifting = {"spring_drift", "spring_by_warmth", "error_drift", "sensor_gain_drift", "constant_drift"}
-    assert everything - laws(runs=2) == drifting | {"sensor_ripple"}
-    assert everything - laws(slowest=REACH.fastest) == {"error_by_speed", "spring_by_speed", "slowing_drag"}
+    assert everything - laws(runs=2) == drifting | {"sensor_ripple", "thrown_sensor"}
+    by_speed = {"error_by_speed", "spring_by_speed", "slowing_drag", "thrown_sensor"}
+    assert everything - laws(slowest=REACH.fastest) == by_speed
     assert everything - laws(load_turns=0.1) == {"uneven_inertia", "wound_cable"}
 
 
@@ -196,6 +198,21 @@ def test_a_torque_sensor_whose_scale_is_off_is_told_with_how_much(shared: Path, 
     assert found.verdict.sentence == CONFOUNDERS["sensor_scale"].sentence
     (much,) = [match for said in found.law if (match := re.search(r"too much is (\S+) ± (\S+) %", said))]
     assert float(much[1]) == pytest.approx(100 * (1 - 1 / 1.05), abs=max(0.1, 1.5 * float(much[2])))
+
+
+@pytest.mark.slow
+def test_a_torque_sensor_that_is_thrown_outward_goes_with_the_speed_and_drags_no_motor(
+    shared: Path, tmp_path: Path
+) -> None:
+    def thrown(c: Columns, began: float) -> Columns:
+        return {"tau_l": c["tau_l"] + 0.3 * (np.gradient(c["theta_m"], c["t"]) / 40.0) ** 2}
+
+    found = spiked(tmp_path, shared / "cases" / "open-1", thrown)
+    told = CONFOUNDERS["thrown_sensor"]
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
+    (much,) = [match for law in found.law if (match := re.search(r"reads too much by (\S+) ± (\S+) N", law))]
+    assert float(much[1]) == pytest.approx(0.3, abs=max(0.03, 1.5 * float(much[2])))
 
 
 @pytest.mark.slow

@@ -100,3 +100,11 @@ def test_runs_too_short_to_tell_noise_from_curves_are_not_compared(
     monkeypatch.setattr(module, "TOGETHER", 30)
     delays = [DELAY + SCATTER * wandering(rng) for _ in SPEEDS]
     assert found(monkeypatch, [noise(rng) - speed(i) * delays[i] for i in range(SPEEDS.size)]) is None
+
+
+def test_counts_lost_in_one_run_are_no_delay_of_every_run(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    left = [noise(rng) for _ in SPEEDS]
+    left[8][ROWS // 2 :] += 15 * NOISE
+    assert found(monkeypatch, left) is None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,7 +12,6 @@ import numpy.typing as npt
 from rig.analysis.tracing.fit.channels import BASELINE, INDEX
 from rig.analysis.tracing.fit.equations import Bare, Equations, Key, Term
 from rig.analysis.tracing.thresholds import CLEAR, HEAVIER, LAG, LATEST, MESH, SECOND
-from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
 STIFFNESS = 7160.0  # N·m/rad, the paper's: what turns a bound in torque into one in angle, of a gear that is no stiffer
@@ -133,10 +131,8 @@ def design(eq: Equations, terms: Sequence[Term], runs: Sequence[int]) -> Design:
         return eq.bare(key, r.y), Part(eq.baseline(key), np.array(r.at), noise), eq.products(key)
 
     keys = eq.of(runs)
-    with ThreadPoolExecutor(WORKERS) as pool:
-        found = zip(noisy, pool.map(eq.spoilt, noisy), strict=True)
-        spoilt = {(i, c): both for i, by_channel in found for c, both in by_channel.items()}
-        made = dict(zip(keys, pool.map(of, keys), strict=True))
+    spoilt = {(i, c): both for i in noisy for c, both in eq.spoilt(i).items()}
+    made = {key: of(key) for key in keys}
     y = {key: y for key, (y, _, _) in made.items()}
     gram, right = np.zeros((len(BASELINE), len(BASELINE))), np.zeros(len(BASELINE))
     less, less_right = np.zeros_like(gram), np.zeros_like(right)
@@ -177,8 +173,7 @@ def extended(d: Design, term: Term, runs: Sequence[int], held: bool = True) -> D
         spoilt = d.eq.spoilt_term(run, term, made) if run in d.eq.noisy else {}
         return {(run, c): (d.eq.bare((run, c), columns), spoilt.get(c)) for c, columns in made.items()}
 
-    with ThreadPoolExecutor(WORKERS) as pool:
-        made = {key: c for part in pool.map(of, runs) for key, c in part.items() if key in d.y}
+    made = {key: c for run in runs for key, c in of(run).items() if key in d.y}
     width = next(iter(made.values()))[0].shape[1] if made else 0
     at = np.arange(d.size, d.size + width)
     new = {key: Part(Bare(z), at, None if noise is None else Bare(noise)) for key, (z, noise) in made.items()}
@@ -216,15 +211,13 @@ def normal(d: Design, new: Mapping[Key, Part]) -> tuple[Array, Array, Array]:
     Noise in columns makes inertias come out low when it is left in. What it adds is found by adding each run's noise
     once more: products of the differences that makes      [fuller1987]
     """
-    with ThreadPoolExecutor(WORKERS) as pool:
-        made = pool.map(lambda key: _products(d, key, new[key]), new)
-        found = [product for block in made for product in block]
     gram, right, noise = np.zeros((d.size, d.size)), np.zeros(d.size), np.zeros((d.size, d.size))
-    for part, mine, across, along, less in found:
-        gram[np.ix_(part.at, mine.at)] += across
-        if part is mine:
-            right[mine.at] += along
-            noise[np.ix_(mine.at, mine.at)] += less
+    for key in new:
+        for part, mine, across, along, less in _products(d, key, new[key]):
+            gram[np.ix_(part.at, mine.at)] += across
+            if part is mine:
+                right[mine.at] += along
+                noise[np.ix_(mine.at, mine.at)] += less
     return gram, right, noise
 
 

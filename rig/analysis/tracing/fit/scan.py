@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,6 @@ from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.thresholds import CLEAR, FAINTEST, NOISE_ALONE
-from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
 
@@ -62,10 +60,9 @@ def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, A
 
     out = {c: np.zeros((d.size, wide)) for c, wide in bank.widths().items()}
     mine = [key for key in keys if key in bank.columns]
-    with ThreadPoolExecutor(WORKERS) as pool:
-        for key, made in zip(mine, pool.map(of, mine), strict=True):
-            for at, m in made:
-                out[key[1]][at] += m
+    for key in mine:
+        for at, m in of(key):
+            out[key[1]][at] += m
     return {c: m[first:] for c, m in out.items()}
 
 

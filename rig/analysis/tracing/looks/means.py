@@ -114,7 +114,7 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     """The same where no run's motor torque has a mean of its own. It counts where it names what friction goes with,
     beside all that had a name and nothing else, and explains everything."""
     looks = [replace(run.look, steady=True) for run in so_far.p.campaign.runs]
-    other, ranked = searched(prepare(looking(campaign, looks), hold_out))
+    other, ranked = searched(prepare(looking(campaign, looks), hold_out), BY_SPEED | {WARMING})
     new = other.names - so_far.names
     told = not other.loud and other.names > so_far.names and new <= BY_SPEED | {WARMING}
     return (other, ranked) if told else (so_far, found)

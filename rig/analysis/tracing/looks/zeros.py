@@ -36,7 +36,7 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     and nothing else more, and explains everything."""
     looks = [replace(run.look, zeros=True) for run in so_far.p.campaign.runs]
     there = with_torque_zeros(looking(campaign, looks), so_far.solution)
-    other, ranked = searched(prepare(there, hold_out))
+    other, ranked = searched(prepare(there, hold_out), frozenset({LATE}))
     late = not other.loud and other.names == {LATE, *so_far.names}
     return (other, ranked) if late else (so_far, found)
 

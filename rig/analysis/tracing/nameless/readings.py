@@ -9,8 +9,10 @@ import numpy as np
 
 from rig.analysis.tracing.nameless.law import (
     BOTH_ANGLES,
+    FAST,
     SEVERAL,
     SOME,
+    WIDE,
     Amount,
     Nameless,
     OfTheTorqueSensor,
@@ -87,6 +89,29 @@ class SensorGainDrift(OfTheTorqueSensor):
     def amount(self, fit: Fit) -> Amount:
         """Relative."""
         return sum_of(fit, "in 1000 s the gain changes by", 100, "%")
+
+
+class ThrownSensor(OfTheTorqueSensor):
+    """The torque sensor reads more the faster it turns, whichever way, as one whose bridge is thrown outward: c·ω_m²
+
+    [taghirad1999]. The motor's torque has an Nth of it left over, as if it were dragged by more one way.
+    """
+
+    name: ClassVar[str] = "thrown_sensor"
+    in_short: ClassVar[str] = "the torque sensor reads with the square of the speed"
+    source: ClassVar[str] = "taghirad1999"
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where it turns fast both ways, or it is any drag of the load, and not at one speed."""
+        return when(reach.fast_backwards > SOME and reach.fastest > WIDE * reach.slowest and reach.runs >= SEVERAL)
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        return {Port.READS_TAU_L: (signals.omega_m / FAST)[:, None] ** 2}
+
+    def amount(self, fit: Fit) -> Amount:
+        """At FAST."""
+        return sum_of(fit, "at 40 rad/s of the motor it reads too much by", 1, "N·m")
 
 
 class SensorScale(OfTheTorqueSensor):

@@ -24,6 +24,7 @@ from rig.analysis.tracing.nameless.readings import (
     SensorRipple,
     SensorScale,
     SensorWaves,
+    ThrownSensor,
     TwoConstants,
     TwoGains,
 )
@@ -137,6 +138,12 @@ CONFOUNDERS: Final = {
         "with it; a spring that is not linear explains less, and no effect of the library explains it.",
         mimics=frozenset({"nonlinear_stiffness"}),
         searched=False,
+    ),
+    "thrown_sensor": Confounder(
+        ThrownSensor(),
+        "speed",
+        "The torque sensor reads more or less the faster it turns, whichever way, as gauges do that are thrown "
+        "outward. No effect of the library does so.",
     ),
     "sensor_scale": Confounder(
         SensorScale(),

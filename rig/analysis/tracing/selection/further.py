@@ -13,7 +13,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.bank import Bank
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import design, extended, fit
+from rig.analysis.tracing.fit.model import Design, design, extended, fit
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, reduced, settled
 from rig.analysis.tracing.fit.some import ranking_of_some, search_some
@@ -25,6 +25,7 @@ from rig.analysis.tracing.selection.instead_of import FRICTIONS, below_zero
 from rig.analysis.tracing.selection.select import select
 from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import ALIKE, EXPLAINED, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
+from rig.analysis.tracing.workers import first_that
 from rig.model.effect import Reach
 
 
@@ -72,13 +73,16 @@ def try_instead_of_eliminated(selected: Selected, found: Found, runs: Sequence[i
         but = {*found.names, *selected.taken}
         least = ALIKE * evidence.get(gone, np.inf)
         alike = [r.term for r in found.ranking if r.term.name not in but and r.evidence > least][:TRIED]
-        for term in alike:
-            bare = reduced(d, [i for i, other in enumerate(d.terms) if other.name == gone])
+        bare = reduced(d, [i for i, other in enumerate(d.terms) if other.name == gone])
+
+        def in_its_place(term: Term, bare: Design = bare) -> Selected | None:
             s = settled(refine(bare, term, runs, covered)[1], runs, covered)
             other = select(selected.p, replace(found, solution=s), runs, covered)
             more = stay < {term.name for term in other.solution.design.terms}
-            if more and (_settles(other, stay) or _takes_most(other, selected)):
-                return other
+            return other if more and (_settles(other, stay) or _takes_most(other, selected)) else None
+
+        if (other := first_that(in_its_place, alike)) is not None:
+            return other
     return selected
 
 
@@ -109,20 +113,20 @@ def try_without_each(selected: Selected, found: Found, bank: Bank, runs: Sequenc
     names = {score.name for score in selected.scores}
     if len(names) < 2 or selected.p.own.line is not None or not selected.loud:
         return selected
-    for name in sorted(names):
+
+    def without(name: str) -> Selected | None:
         terms = selected.solution.design.terms
         bare = reduced(selected.solution.design, [i for i, term in enumerate(terms) if term.name == name])
         d = settled(fit(bare), runs, covered).design
-        without = frozenset({name})
-        but = without | selected.taken
+        but = selected.taken | {name}
         others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=but)
         other = select(selected.p, others, runs, covered)
         same = replace(other, p=selected.p)  # by the same floors: without repeats they are measured beside the effects
-        fewer = other.names <= names - without and same.left < selected.left
-        settles = names - without <= other.names and _settles(same, names) and _is_of_a_gear(other, selected)
-        if fewer or settles:
-            return other
-    return selected
+        fewer = other.names <= names - {name} and same.left < selected.left
+        settles = names - {name} <= other.names and _settles(same, names) and _is_of_a_gear(other, selected)
+        return other if fewer or settles else None
+
+    return first_that(without, sorted(names)) or selected
 
 
 def _is_of_a_gear(other: Selected, selected: Selected) -> bool:
@@ -157,13 +161,16 @@ def try_each_added(selected: Selected, found: Found, bank: Bank, runs: Sequence[
     but = stay | selected.taken
     beside = ranking_of_some(d, bank, runs, covered, LAWS)
     only = [r for r in beside if found.names == (r.term.name,)]
-    for term in _in_all_laws(_most_of(found.ranking, but) + _most_of(beside, but), only):
+
+    def added(term: Term) -> Selected | None:
         s = settled(refine(d, term, runs, covered)[1], runs, covered)
         other = select(selected.p, replace(found, solution=s), runs, covered)
         more = stay < {term.name for term in other.solution.design.terms}
-        if more and (_settles(other, stay) or _stands_alone(other, stay) or _takes_most(other, selected)):
-            return other
-    return selected
+        counts = more and (_settles(other, stay) or _stands_alone(other, stay) or _takes_most(other, selected))
+        return other if counts else None
+
+    terms = _in_all_laws(_most_of(found.ranking, but) + _most_of(beside, but), only)
+    return first_that(added, terms) or selected
 
 
 def _most_of(ranking: Sequence[Scored], stay: Collection[str]) -> list[Term]:
