@@ -73,19 +73,19 @@ def first_that(of: Callable[[T], R | None], items: Sequence[T]) -> R | None:
     """The first that `of` makes of one of `items`, in their order; None where it makes none of any. While one is tried
     a copy tries the next: only whether there is something comes back, for what is made may hold half of all there is.
     """
-    for at in range(0, len(items), 2):
-        one, *more = items[at : at + 2]
-        with contextlib.ExitStack() as stack:
-            others = [stack.enter_context(meanwhile(functools.partial(_makes, of, other))) for other in more]
+    if not _may_fork():
+        return next((made for item in items if (made := of(item)) is not None), None)
+    for one, *after in (items[at : at + 2] for at in range(0, len(items), 2)):
+        with meanwhile(functools.partial(_makes_any, of, after)) as makes_any:
             if (made := of(one)) is not None:
-                return made  # the copy goes with the stack
-            if any(other() for other in others):
-                return of(more[0])
+                return made  # the copy is gone with the block
+            if makes_any():
+                return of(*after)
     return None
 
 
-def _makes(of: Callable[[T], R | None], item: T) -> bool:
-    return of(item) is not None
+def _makes_any(of: Callable[[T], R | None], items: Sequence[T]) -> bool:
+    return any(of(item) is not None for item in items)
 
 
 def one_heap() -> None:

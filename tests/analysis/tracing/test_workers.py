@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing import workers
-from rig.analysis.tracing.workers import each, meanwhile
+from rig.analysis.tracing.workers import each, first_that, meanwhile
 
 
 @pytest.fixture(autouse=True)
@@ -91,6 +91,30 @@ def test_meanwhile_is_made_by_the_copy_while_the_block_runs(tmp_path: Path) -> N
     with meanwhile(waits) as found:
         mark.touch()
         assert found() != os.getpid()
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_the_first_that_makes_something_counts_whoever_tried_it(
+    processes: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(workers, "WORKERS", processes)
+
+    def of(n: int) -> str | None:
+        with (tmp_path / f"{n}").open("a") as file:
+            file.write(f"{os.getpid()}\n")
+        return f"{n} by {os.getpid()}" if n in (3, 4, 6) else None
+
+    def tried(n: int) -> set[int]:
+        return {int(pid) for pid in (tmp_path / f"{n}").read_text().split()}
+
+    assert first_that(of, [0, 1, 2, 3, 4, 5]) == f"3 by {os.getpid()}"  # a copy found it, and it is made here
+    assert [len(tried(n)) for n in range(4)] == [1, 1, 1, processes]
+    assert tried(0) == tried(2) == {os.getpid()}
+    assert (tried(1) == {os.getpid()}) is (processes == 1)
+    assert not (tmp_path / "4").exists()
+    assert first_that(of, [6, 7]) == f"6 by {os.getpid()}"
+    assert first_that(of, [8]) is None
+    assert first_that(of, []) is None
 
 
 def test_a_block_that_raises_leaves_no_copy_behind(tmp_path: Path) -> None:
