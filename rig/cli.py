@@ -23,7 +23,7 @@ DESCRIPTION = "Data acquisition and control for a strain-wave gear test rig."
 EPILOG = (
     "exit codes: 0 pass, 1 out of limits, 2 usage, or a place that cannot be read or written, 3 not ready, 4 stopped,\n"
     "5 tripped, 6 incomplete or damaged samples, inconclusive, ambiguous, unknown, or a parameter left open,\n"
-    "70 internal error, 130 halted"
+    "70 internal error, 130 halted, or interrupted"
 )
 MEANT = 0.75  # of the letters of an option, in their order: with less, --format was taken for --sort
 

@@ -83,7 +83,7 @@ def test_the_look_counts_where_it_adds_what_means_tell_of_and_explains_everythin
     other = SimpleNamespace(names=set(after), loud=loud)
     monkeypatch.setattr(means, "looking", lambda campaign, looks: campaign)
     monkeypatch.setattr(means, "prepare", lambda campaign, hold_out: None)
-    monkeypatch.setattr(means, "searched", lambda p: (other, "ranking"))
+    monkeypatch.setattr(means, "searched", lambda p, wanted: (other, "ranking") if means.WARMING in wanted else None)
     so_far: Any = SimpleNamespace(names=set(before), p=SimpleNamespace(campaign=SimpleNamespace(runs=())))
     got, _ = means.taken(so_far, SimpleNamespace(), SimpleNamespace(), ())  # type: ignore[arg-type]
     assert (got is other) is counts
