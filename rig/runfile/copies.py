@@ -84,10 +84,11 @@ def once(found: Sequence[T], twice: Twice = passed_over) -> list[T]:
 
 def measured_once(found: Iterable[T], twice: Twice = passed_over) -> Iterator[T]:
     """Those whose samples are not to the last bit those of one before; `twice` is told of the others."""
-    first: dict[str, str] = {}
+    first: dict[str, Path] = {}
     for run in found:
-        name = first.setdefault(run.digest, run.path.name) if run.digest else run.path.name
-        if not run.digest or name == run.path.name:
+        there = first.setdefault(run.digest, run.path) if run.digest else run.path
+        if there is run.path:
             yield run
-        else:
+        else:  # of folders by date two may have one name
+            name = there if there.name == run.path.name else there.name
             twice(run.path, f"its samples are those of {name} to the last bit, {NOISE}")

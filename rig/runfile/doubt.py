@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.core.errors import DataError, HdrigError, said_of
-from rig.runfile.manifest import entry
+from rig.runfile.manifest import digest_of, entry
 from rig.runfile.remains import SAMPLES
 
 RESULT = "result.json"
@@ -19,7 +19,7 @@ def doubt(folder: Path, about: Mapping[str, Any]) -> str:
     if not (folder / RESULT).exists():
         return ""
     for name in (RESULT, SAMPLES):
-        if _is_another(folder / name, _sha256(about, name)):
+        if _is_another(folder / name, digest_of(about, name)):
             return f"{name} is not what it was when the run was closed or analysed (see hdrig verify)"
     there, said = (folder / SAMPLES).exists(), entry(about, SAMPLES)
     if (there and said.get("sha256")) or not (there or said):  # a folder of results alone promises no samples
@@ -50,7 +50,7 @@ def changed(folder: Path, about: Mapping[str, Any]) -> str:
     from rig.runfile.finalise import describe
     from rig.runfile.manifest import told
 
-    path, said = folder / SAMPLES, _sha256(about, SAMPLES)
+    path, said = folder / SAMPLES, digest_of(about)
     if not said or not path.exists():
         return ""
     with told(DataError, f"{path} cannot be read"):
@@ -69,15 +69,10 @@ def _unreadable(folder: Path) -> str:
     return ""
 
 
-def _is_another(path: Path, sha256: str | None) -> bool:
+def _is_another(path: Path, sha256: str) -> bool:
     from rig.runfile.finalise import describe
 
     try:
         return bool(sha256) and path.exists() and describe(path)["sha256"] != sha256
     except OSError:  # what cannot be read is said by those who read it
         return False
-
-
-def _sha256(about: Mapping[str, Any], name: str) -> str | None:
-    said = entry(about, name).get("sha256")
-    return said if isinstance(said, str) else None

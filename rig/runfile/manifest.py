@@ -71,9 +71,9 @@ def entry(about: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return said if isinstance(said, Mapping) else {}
 
 
-def digest_of(about: Mapping[str, Any]) -> str:
-    """SHA-256 of the samples; "" where the manifest does not say it."""
-    said = entry(about, SAMPLES).get("sha256")
+def digest_of(about: Mapping[str, Any], name: str = SAMPLES) -> str:
+    """SHA-256 of a file of the folder; "" where the manifest does not say it."""
+    said = entry(about, name).get("sha256")
     return said if isinstance(said, str) else ""
 
 

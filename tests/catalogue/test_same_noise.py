@@ -33,6 +33,13 @@ def test_a_trend_counts_them_once_and_says_so(again: list[Path]) -> None:
     assert "--seed N" in said
 
 
+def test_two_folders_of_one_name_are_told_apart(tmp_path: Path) -> None:
+    folders = [made_run(tmp_path / day / "run", table=rows(1)) for day in ("monday", "tuesday")]
+    runs, _, said = open_runs(folders, lambda text: None)
+    assert [run.path for run in runs] == folders[:1]
+    assert [f"its samples are those of {folders[0]} to the last bit" in s for s in said] == [True]
+
+
 def test_compared_with_each_other_they_are_one(again: list[Path]) -> None:
     with pytest.raises(UsageError, match=r"one run 2 times: same counts once: its samples are those of one "):
         compare(again[:2])
