@@ -44,6 +44,7 @@ def test_a_reset_says_so(rig: Wired, capsys: pytest.CaptureFixture[str], fault: 
     assert all("twin-can (SIMULATED)" in line for line in capsys.readouterr().out.splitlines())
 
 
+@pytest.mark.slow
 def test_a_safe_torque_off_that_stands_is_named_by_the_reset_and_by_the_run_it_refuses(
     rig: Wired, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -52,6 +52,7 @@ def test_a_drive_that_cannot_be_reached_goes_off_by_itself_and_is_not_reset(lost
     rig.close()
 
 
+@pytest.mark.slow
 def test_a_drive_that_went_off_by_itself_can_be_used_again() -> None:
     rig = CanopenRig()
     faults = BusFaults(rig.assembly.bus)

@@ -42,6 +42,7 @@ def test_a_run_is_judged_again_by_the_limit_it_was_judged_by_until_told_otherwis
     assert analysed(folder).verdict == "MEASURED"
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_manifest_is_its_own_and_can_be_lifted(tmp_path: Path) -> None:
     folder = made_run(tmp_path / "run", {"limits": {NAME: {"upper": 60.0}}})
     for _ in range(2):

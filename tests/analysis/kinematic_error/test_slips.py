@@ -81,7 +81,7 @@ def eccentric(rpm: float, at_once: float) -> MadeRun:
     return MadeRun({"t": t, "theta_m": theta_m, "theta_l": theta_l}, manifest)
 
 
-@pytest.mark.parametrize("rpm", [400.0, 450.0, 600.0])
+@pytest.mark.parametrize("rpm", [400.0, *(pytest.param(rpm, marks=pytest.mark.slow) for rpm in (450.0, 600.0))])
 def test_an_eccentric_encoder_slips_nowhere(rpm: float) -> None:
     assert not [c for c in analyse(eccentric(rpm, 0.0)).checks if c.name == "slips"]
 

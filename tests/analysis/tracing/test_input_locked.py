@@ -72,6 +72,7 @@ def by_angle(torque: np.ndarray, angle: float) -> np.ndarray:
         (by_angle, Status.EXPLAINED, ("angle_dependent_stiffness",)),
     ],
 )
+@pytest.mark.slow
 def test_the_spring_of_a_held_motor_is_traced(
     tmp_path: Path, rng: np.random.Generator, twist: Twist, status: Status, named: tuple[str, ...]
 ) -> None:

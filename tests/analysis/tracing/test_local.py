@@ -313,6 +313,7 @@ def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none_or_noth
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_staircase_of_steps_too_small_to_be_seen_is_told_by_the_way(tmp_path: Path, shared: Path) -> None:
     """One count on every 0.15 rad or so that the output gets further from where its run began, whichever way."""
     kinds = ("slow_ke", "speed_60rpm", "speed_200rpm", "speed_400rpm", "speed_minus200rpm")

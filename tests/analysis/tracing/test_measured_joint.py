@@ -22,7 +22,7 @@ def test_the_weight_is_named_and_what_is_left_goes_with_the_angle_of_the_joint(s
     verdict = d["verdict"]
     assert (verdict["status"], verdict["coordinate"]) == ("unknown_effect", "load_angle")
     assert set(verdict["effects"]) == ARM
-    low, high = d["baseline"]["after_refit"]["K"]["ci95"]
+    low, high = d["baseline"]["parameters"]["K"]["ci95"]
     assert low < 37_000 < high  # N·m/rad, the slope of torsion over torque
 
 

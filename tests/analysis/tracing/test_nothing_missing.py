@@ -23,6 +23,7 @@ def test_nothing_is_missing_from_a_rig_that_is_the_papers(tmp_path: Path, plan: 
     assert (verdict.status, verdict.effects) == (Status.NOTHING, ())
 
 
+@pytest.mark.slow
 def test_numbers_made_up_without_any_noise_have_nothing_hidden_in_their_rounding(tmp_path: Path) -> None:
     folder = tmp_path / "campaign" / "ramp"
     folder.mkdir(parents=True)

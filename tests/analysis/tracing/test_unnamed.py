@@ -24,6 +24,7 @@ def bearing(c: Columns, began: float) -> Columns:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_bearing_of_two_orders_is_two_curves_and_nothing_is_left(tmp_path: Path, shared: Path) -> None:
     found = spiked(tmp_path / "two", shared / "cases" / "open-1", bearing, RUNS)
     assert (found.verdict.status, found.verdict.coordinate) == (Status.UNKNOWN, "motor_angle")

@@ -35,8 +35,8 @@ def document(trace: Trace) -> dict[str, Any]:
         },
         "noise_floor": {f.channel: _floor(f) for f in trace.floors},
         "baseline": {
-            "parameters": _parameters(trace.baseline),
-            "after_refit": _parameters(trace.baseline_after),
+            "parameters": _parameters(trace.baseline_after),  # what a program takes for the gear's
+            "before_refit": _parameters(trace.baseline),
             "not_moved": _not_moved(trace),
             "cannot_be_told_apart": trace.cannot_be_told_apart,
         },
