@@ -69,7 +69,7 @@ def resample(theta: Array, y: Array, per_turn: int) -> tuple[Array, Array]:
 
 
 def _moved(x: Array, known: Array, y: Array) -> Array:
-    """`y` of `known` moved to `x`, each by less than to its neighbours, along the slope from one of them to the other."""
+    """`y` of `known` moved to `x`, each by less than to its neighbours, along the slope between these two."""
     out = np.empty_like(x)
     for start in range(0, x.size, WIDE_BLOCK):
         stop = min(start + WIDE_BLOCK, x.size)
