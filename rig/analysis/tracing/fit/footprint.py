@@ -36,6 +36,8 @@ def _lever(c: Array, s: Signals) -> Iterator[Mark]:
 def _reads_theta_m(c: Array, s: Signals) -> Iterator[Mark]:
     yield "A", c * (1 / s.ratio - s.series_slope)[:, None], 0
     yield "M", -s.gear.J_m * c, 2
+    yield "M", -s.gear.B_m * c, 1  # of an order 1 at 100 rpm a seventh of that, a quarter of a period later
+    yield "M", (np.nan_to_num(s.torque) * s.series_bend)[:, None] * c, 0  # θ̃_p′ is read at another angle
 
 
 def _reads_theta_l(c: Array, s: Signals) -> Iterator[Mark]:

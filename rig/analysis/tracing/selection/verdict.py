@@ -73,6 +73,8 @@ def _decided(asked: Asked) -> Conclusion:
         elsewhere = inside or _drifting(p, s, names, asked.floors) or _uneven(p, s, names, asked.floors)
         elsewhere = elsewhere or (None if names else _weakening(p, s))
         return elsewhere or _jumped(p, names) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
+    if not names and asked.worst[1] < LITTLE and (drift := _drifting(p, s, names, asked.floors)):
+        return drift  # of many floors, which no error shows: the little that is left is what of it falls within runs
     where = _where(p, s, asked.after, asked.floors, asked.one)
     return _with_a_remainder(asked, where) or _unknown(asked, where)
 
@@ -182,8 +184,8 @@ def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
 
 
 def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
-    """Nothing is above the floor, but the zeros of the runs follow the temperature, drift, or go with the speed, by
-    more than it; None where they do not. Names stand beside it."""
+    """Little or nothing is above the floor, but the zeros of the runs follow the temperature, drift, or go with the
+    speed, by more than it; None where they do not. Names stand beside it."""
     ways = {"temperature": warm_zeros, "time": drifting_zeros, "speed": zeros_by_speed}
     found = ((where, of(s, p.split.fitted, p.split.held_out)) for where, of in ways.items())
     where, drift = next(((where, one) for where, one in found if one is not None), ("", None))
