@@ -71,7 +71,7 @@ class NonlinearStiffness(Effect):
         by_c[0], by_t[-1] = 1.0, 1.0
         return (
             parameter("extra_compliance", c, fit.half_width(by_c), "rad/(N·m)"),
-            parameter("K_near_zero", near, near**2 * fit.half_width(by_c), "N·m/rad"),
+            parameter("K_near_zero", near, near**2 * fit.half_width(_beside_1_over_K(fit, by_c)), "N·m/rad"),
             parameter("T_0", fit.shape[1], fit.half_width(by_t), "N·m"),
         )
 
@@ -87,6 +87,15 @@ class NonlinearStiffness(Effect):
         gradient = np.zeros(fit.covariance.shape[0])
         gradient[0], gradient[-1] = fourth / T_0**2, -2.0 * c * fourth / T_0**3
         return parameter("k_3", c * fourth / T_0**2, fit.half_width(gradient), "N·m/rad³")
+
+
+def _beside_1_over_K(fit: Fit, by: Array) -> Array:
+    """The gradient `by` (k+s,) of a compliance that 1/K adds to: the two are known together better than either."""
+    if fit.beside_series is None:
+        return by
+    whole = np.zeros(len(fit.beside_series))
+    whole[: by.size], whole[-1] = by, 1.0
+    return whole
 
 
 def _cubic(x: Array) -> Array:

@@ -326,6 +326,21 @@ def test_a_cubic_spring_is_solved_exactly_and_is_its_cube_where_that_is_small() 
     np.testing.assert_allclose(far, -(s.torque**3) / 3000.0**2, atol=1e-3 * np.abs(far).max())
 
 
+def test_a_spring_near_zero_torque_is_known_though_what_it_gives_there_more_than_far_away_is_not() -> None:
+    """Torques that never reach T_0 tell the sum of both compliances, and neither."""
+    k, s, series = 1, 2, 2 * len(KNOWN.kinematic_error.a)
+    along = np.zeros(k + s + series + 1)
+    along[0], along[-1] = -2e-5, 2e-5
+    joint = np.outer(along, along)
+    joint[-1, -1] += (1e-8) ** 2
+    fit = Fit(np.array([3e-5]), (KNEE, 900.0), joint[: k + s, : k + s], KNOWN, N, joint)
+    told = {p.name: p for p in NonlinearStiffness().parameters(fit)}
+    assert told["extra_compliance"].holds_zero
+    near = told["K_near_zero"]
+    assert near.value == pytest.approx(1 / (1 / KNOWN.K + 3e-5))
+    assert near.ci95[1] - near.value == pytest.approx(1.96 * 1e-8 * near.value**2, rel=1e-3)
+
+
 def test_the_cubic_coefficient_is_told_whatever_the_scale_it_was_fitted_with() -> None:
     fit = Fit(np.array([2e-6]), (CUBIC, 200.0), np.zeros((3, 3)), KNOWN, N)
     (found,) = NonlinearStiffness().parameters(fit)

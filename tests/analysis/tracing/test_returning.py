@@ -91,7 +91,7 @@ def test_intervals_cover() -> None:
         s = solved(seed, scatter=0.2)
         half = 1.96 * np.sqrt(covariance(s)[INDEX["J_m"], INDEX["J_m"]])
         before += abs(s.value("J_m") - J["J_m"]) < half
-        (told,) = (p for p in inertias_by_what_returns(s) if p.name == "J_m")
+        (told,) = (p for p in inertias_by_what_returns(s, ()) if p.name == "J_m")
         inside += told.ci95[0] <= J["J_m"] <= told.ci95[1]
     assert before < 20
     assert inside > 186
@@ -99,7 +99,7 @@ def test_intervals_cover() -> None:
 
 def test_only_inertias_and_what_goes_with_them_are_told_otherwise() -> None:
     s = solved(1, scatter=0.2)
-    told = {p.name: p.value for p in inertias_by_what_returns(s)}
+    told = {p.name: p.value for p in inertias_by_what_returns(s, ())}
     plain = {p.name: p.value for p in baseline(s)}
     assert told.keys() == plain.keys()
     assert told["J_m"] > 1.04 * plain["J_m"]

@@ -36,10 +36,13 @@ STEP = 1e-4  # relative, of a coefficient or shape: figures are smooth in them
 LEAST = 0.5  # of what is fitted: below it the series has no sum that its terms would tell
 
 
-def inertias_by_what_returns(s: Solution) -> tuple[Parameter, ...]:
-    """`baseline`, with inertias that know nothing of what scatters within a run, and all others beside them."""
-    moved = by_what_returns(s)
-    return baseline(replace(s, x=moved.x), covariance(s) + moved.more)
+def inertias_by_what_returns(s: Solution, runs: Sequence[int]) -> tuple[Parameter, ...]:
+    """`baseline`, with inertias that know nothing of what scatters within a run, and all others beside them. How far
+    shapes of effects are known is in all intervals: a spring that gets stiffer beyond all torques of the fitted `runs`
+    leaves its K open."""
+    moved, (fitted, _) = by_what_returns(s), _loose(s)
+    spread = _widened(s, fitted, runs, covariance) if fitted else covariance(s)
+    return baseline(replace(s, x=moved.x), spread[: s.x.size, : s.x.size] + moved.more)
 
 
 def baseline(s: Solution, spread: Array | None = None) -> tuple[Parameter, ...]:
@@ -144,19 +147,24 @@ def effects(
     """Parameters of every effect in the model; the shape's uncertainty is in all intervals, which are as wide as
     `spread` says. That of an exponent which is a textbook's is in its own interval alone: the others are those of
     the textbook's law."""
-    d, slopes = s.design, []
-    for i, term in enumerate(s.design.terms):
-        slopes += [(i, j) for j, loose in enumerate(term.effect.loose) if loose]
-    slopes.sort(key=lambda slope: _is_usual(d.terms[slope[0]], slope[1]))
-    fitted = sum(not _is_usual(d.terms[i], j) for i, j in slopes)
-    c = _widened(s, slopes[:fitted], runs, spread)
-    if fitted < len(slopes):
+    fitted, usual = _loose(s)
+    slopes = [*fitted, *usual]
+    c = _widened(s, fitted, runs, spread)
+    if usual:
         c = _beside(c, _widened(s, slopes, runs, spread))
     told: dict[str, list[Told]] = {}
     for i, term in enumerate(s.design.terms):
         by = _spread(s, len(c), i, slopes)
         told.setdefault(term.name, []).append(Told(term.effect, of_term(s, c, i, slopes), by))
     return {name: joined(terms, c) for name, terms in told.items()}
+
+
+def _loose(s: Solution) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+    """Shape parameters that are not fixed, as (term, which of its): those that were fitted, and a textbook's."""
+    terms = s.design.terms
+    loose = [(i, j) for i, term in enumerate(terms) for j, free in enumerate(term.effect.loose) if free]
+    usual = [slope for slope in loose if _is_usual(terms[slope[0]], slope[1])]
+    return [slope for slope in loose if slope not in usual], usual
 
 
 def _is_usual(term: Term, j: int) -> bool:
@@ -239,7 +247,7 @@ def of_term(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]] = (
     """The part of coefficients and covariance that belongs to one term."""
     by, first = _spread(s, len(c), i, slopes), s.design.eq.runs[0]
     place = s.design.place(i)
-    beside = np.vstack([by, np.eye(len(c))[[INDEX[name] for name in SERIES]]])
+    beside = np.vstack([by, np.eye(len(c))[[INDEX[name] for name in (*SERIES, "compliance")]]])
     joint = beside @ c @ beside.T
     k = len(by)
     tau_c = s.value("tau_c") if s.gram[INDEX["tau_c"], INDEX["tau_c"]] > UNSEEN else None

@@ -55,7 +55,7 @@ def report(
     shares, ranked = _ranked(p, s, scores)
     one_way = one_sided(fitted)
     ranked = tuple(name for name in ranked if not (one_way and name == COGGING))
-    baseline = honest(parameters.inertias_by_what_returns(empty), fitted_runs)
+    baseline = honest(parameters.inertias_by_what_returns(empty, p.split.fitted), fitted_runs)
     conclusion = decide(Asked(p, s, ranked, scores, before, after, p.floors, found, fitted))
     conclusion, decided = undecided(p, conclusion, after, beyond(p, baseline))
     beside = unnamed(p, s, after, conclusion.home) if conclusion.home else Unnamed(after)
@@ -66,7 +66,8 @@ def report(
         lives = conclusion.lives_in or (lives_in(p.eq, _left(p, empty), p.floors) if shares else ())
         tried = candidates(p, found.ranking, before, conclusion.verdict.effects, confounded)
         tried = dismissed(tried, conclusion.verdict, first.pooled)
-        refitted, ripple = honest(parameters.inertias_by_what_returns(s), fitted_runs), ripples(p.campaign.runs)
+        refitted = honest(parameters.inertias_by_what_returns(s, p.split.fitted), fitted_runs)
+        ripple = ripples(p.campaign.runs)
         drift = mean_drifts(p.campaign.runs)
         simulated, drawn = shown()
     named = [name for name in conclusion.verdict.effects if name in shares]
