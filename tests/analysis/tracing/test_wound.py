@@ -78,6 +78,7 @@ def test_the_motor_holds_what_the_wind_up_gains_and_the_clamp_what_acts_on_the_l
     def shown(port: Port) -> dict[str, np.ndarray]:
         return footprint({port: column}, s, smooth, MEASURED - {"tau_l"}, is_wound=True)
 
-    assert shown(Port.WIND_UP)["M"] == pytest.approx(-K / s.ratio * smooth(column))
+    lever = (1 / s.ratio - GEAR.kinematic_error.slope(s.theta_m))[:, None]
+    assert shown(Port.WIND_UP)["M"] == pytest.approx(-K * smooth(lever * column), rel=1e-3)
     assert set(shown(Port.LOAD_TORQUE)) <= {"L"}
     assert shown(Port.READS_TAU_L)["M"] == pytest.approx(0.0, abs=1e-12), "a sensor that is not there has no error"

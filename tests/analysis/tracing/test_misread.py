@@ -1,4 +1,4 @@
-"""A motor angle that is read wrong is in the motor's balance by all that stands there with that angle."""
+"""What is read wrong is in the motor's balance by all that stands there with it."""
 
 from __future__ import annotations
 
@@ -40,3 +40,11 @@ def test_what_it_drags_and_where_the_lever_stands_is_no_little_of_it() -> None:
     whole = footprint({Port.READS_THETA_M: error}, s, SMOOTH, MEASURED)["M"]
     inertia = SMOOTH(-GEAR.J_m * error, 2)
     assert np.sqrt(np.mean((whole - inertia) ** 2)) > 0.2 * np.sqrt(np.mean(inertia**2))
+
+
+def test_a_torque_that_is_read_wrong_is_in_the_lever_as_well() -> None:
+    s = dataclasses.replace(motion(), gear=GEAR)
+    error = 0.4 * np.cos(s.theta_l + 0.2)  # N·m
+    wrong = -error / s.ratio + error * GEAR.kinematic_error.slope(s.theta_m)  # of τ_m − T/N + T·θ̃_p′
+    told = footprint({Port.READS_TAU_L: error[:, None]}, s, SMOOTH, MEASURED)["M"][:, 0]
+    np.testing.assert_allclose(told, SMOOTH(wrong), atol=1e-3 * np.abs(wrong).max())
