@@ -6,7 +6,7 @@ import pytest
 
 from rig.analysis.tracing.answer import Status, Verdict
 from rig.analysis.tracing.selection.conclusion import Conclusion
-from rig.analysis.tracing.selection.inseparable import inseparable, whose_spring
+from rig.analysis.tracing.selection.inseparable import inseparable, whose_spring, winds_up
 from rig.analysis.tracing.selection.sentences import HOUSING, SPRING, lacks
 
 RUNOUT, WEIGHT, CROSSTALK = "output_once_per_rev", "gravity_unbalance", "torque_sensor_crosstalk"
@@ -47,3 +47,12 @@ def test_beside_a_housing_nobody_knows_whose_spring_is_not_linear(names: tuple[s
 def test_of_one_spring_it_is_known(names: tuple[str, ...]) -> None:
     said = said_of(*(names or (WEIGHT,)))
     assert whose_spring(said) is said
+
+
+def test_what_a_weight_may_wind_up_is_no_runout_beside_a_rest_that_goes_with_the_same_angle() -> None:
+    """As of a joint of an arm whose torque nobody read (LARA8, joint 3)."""
+    names, angles = ("output_once_per_rev", "cogging_torque"), {"theta_m", "theta_l", "tau_m"}
+    assert winds_up(names, "load_angle", angles) == ("cogging_torque",)
+    assert winds_up(names, "speed", angles) == names
+    assert winds_up(names, "speed", angles - {"tau_m"}) == ("cogging_torque",)
+    assert winds_up(names, "load_angle", angles | {"tau_l"}) == names

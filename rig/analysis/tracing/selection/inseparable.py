@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -23,6 +23,15 @@ def inseparable(names: Collection[str], has: Collection[str]) -> tuple[str, ...]
     if "tau_m" not in known and not known >= WIND_UP:
         rivals |= {other for one, other in ((WEIGHT, CROSSTALK), (CROSSTALK, WEIGHT)) if one in names}
     return tuple(sorted(rivals - set(names)))
+
+
+def winds_up(names: Sequence[str], coordinate: str, has: Collection[str]) -> tuple[str, ...]:
+    """`names` that stand beside a rest of that `coordinate`. Where nobody read the shaft torque, a weight may be behind
+    both if the rest goes with the output's angle, or no torque was read at all: what it winds up is a wave in that
+    angle, and no runout."""
+    if "tau_l" not in has and (coordinate == "load_angle" or "tau_m" not in has):
+        return tuple(name for name in names if name != RUNOUT)
+    return tuple(names)
 
 
 def whose_spring(said: Conclusion) -> Conclusion:

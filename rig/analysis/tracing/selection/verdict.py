@@ -30,7 +30,7 @@ from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.falls import most, share, share_of_all
 from rig.analysis.tracing.selection.hidden import hidden
-from rig.analysis.tracing.selection.inseparable import inseparable, whose_spring
+from rig.analysis.tracing.selection.inseparable import inseparable, whose_spring, winds_up
 from rig.analysis.tracing.selection.next_run import along, by_table, deciding
 from rig.analysis.tracing.selection.sentences import in_words, lacks, nothing, of_the_rest
 from rig.analysis.tracing.selection.standing import standing
@@ -127,6 +127,7 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
     told = line is None and (asked.has_repeats or total <= EXPLAINED)
     taken = min(share(*most(p.held_out, before, after)), share_of_all(p.held_out, before, after))
     stand = standing(best.coordinate, shared, asked.scores, asked.plain, told) if taken > PART else ()
+    stand = winds_up(stand, best.coordinate, frozenset().union(*(run.has for run in p.eq.runs)))
     sentence = line.sentence() if line is not None else of_the_rest(best, total)
     if stand:
         sentence = f"{lacks(stand, *most(p.held_out, before, after), 'most improved')} {sentence}"
