@@ -36,6 +36,7 @@ class NonlinearStiffness(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("kind", "T_0")
     loose: ClassVar[tuple[bool, ...]] = (False, True)
     TORQUES: Final = (1.5, 3.0, 6.0, 12.0, 25.0, 50.0)  # N·m
+    STIFFER: Final = 0.5  # of 1/K: c may be less than nothing where several of them make up a curve
     CUBIC_AT: Final = (0.3, 1.0, 3.0)  # of the largest torque: where the cubic part is as large as the other; T³ beyond
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -76,10 +77,10 @@ class NonlinearStiffness(Effect):
         )
 
     def plausible(self, fit: Fit) -> bool:
-        """A spring stays a spring: stiffness near zero is positive."""
+        """A spring stays a spring, and none is twice as stiff near zero as under load."""
         if fit.shape[0] == CUBIC:
             return True
-        return bool(1.0 / fit.known.K + fit.coefficients[0] > 0)
+        return bool(fit.known.K * fit.coefficients[0] > -self.STIFFER)
 
     def _k_3(self, fit: Fit) -> Parameter:
         """[N·m/rad³]; c and T_0 alone have no meaning where the cubic part is small."""

@@ -112,7 +112,7 @@ def test_what_a_campaign_cannot_show_is_not_searched_for() -> None:
         return {c.effect.name for c in CONFOUNDERS.values() if c.effect.shapes(covered)}
 
     everything = laws()
-    assert everything - laws(backwards=0.02) == {"sector_drag"}
+    assert everything - laws(backwards=0.02) == {"sector_drag", "dragged_sensor"}
     # slow runs alone go both ways: any drag does so
     assert everything - laws(fast_backwards=0.02) == {"uneven_drag", "thrown_sensor"}
     assert everything - laws(turned_both_ways=0.1) == {"sector_drag"}  # of a turn: a weight does as much one way
@@ -213,6 +213,21 @@ def test_a_torque_sensor_that_is_thrown_outward_goes_with_the_speed_and_drags_no
     assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
     (much,) = [match for law in found.law if (match := re.search(r"reads too much by (\S+) ± (\S+) N", law))]
     assert float(much[1]) == pytest.approx(0.3, abs=max(0.03, 1.5 * float(much[2])))
+
+
+@pytest.mark.slow
+def test_a_torque_sensor_whose_own_bearing_drags_winds_nothing_up(shared: Path, tmp_path: Path) -> None:
+    def dragged(c: Columns, began: float) -> Columns:
+        locked = np.ptp(c["theta_l"]) < 1e-3
+        return {"tau_l": c["tau_l"] + (0.0 if locked else 0.4 * np.sign(np.gradient(c["theta_m"])))}
+
+    kinds = ("slow_ke", "speed_120rpm", "speed_minus200rpm", "speed_300rpm", "lock_60")
+    found = spiked(tmp_path, shared / "cases" / "open-1", dragged, [f"{kind}_{k}" for kind in kinds for k in (1, 2)])
+    told = CONFOUNDERS["dragged_sensor"]
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
+    (much,) = [match for law in found.law if (match := re.search(r"its own: it is (\S+) ± (\S+) N", law))]
+    assert float(much[1]) == pytest.approx(0.4, abs=max(0.04, 1.5 * float(much[2])))
 
 
 @pytest.mark.slow

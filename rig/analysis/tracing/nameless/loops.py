@@ -1,4 +1,4 @@
-"""What stays behind: creep of the spring, play of a coupling, the torque sensor's own hysteresis."""
+"""What stays behind: creep of the spring, play of a coupling, the torque sensor's own drag and hysteresis."""
 
 from __future__ import annotations
 
@@ -7,9 +7,20 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import BOTH_ANGLES, Nameless, OfTheTorqueSensor, torque_of
+from rig.analysis.tracing.nameless.law import (
+    BOTH_ANGLES,
+    SOME,
+    Amount,
+    Nameless,
+    OfTheTorqueSensor,
+    sum_of,
+    torque_of,
+    when,
+)
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.memory import follower, play
+
+TURNED: Final = 2e-5  # rad: gone through within a row of the slow run, so its size tells nothing but the height
 
 
 class Creep(Nameless):
@@ -52,7 +63,6 @@ class CouplingPlay(Nameless):
     name: ClassVar[str] = "coupling_play"
     in_short: ClassVar[str] = "an encoder's coupling has play"
     source: ClassVar[str] = "nordin2002"
-    HALF: Final = 2e-5  # rad: gone through within a row of the slow run, so its size tells nothing but the height
 
     def has_state(self) -> bool:
         """It stays behind."""
@@ -60,12 +70,50 @@ class CouplingPlay(Nameless):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading, for half the play of 1 rad."""
-        angle = np.ascontiguousarray(np.nan_to_num(signals.theta_l))
-        return {Port.READS_THETA_L: ((play(angle, self.HALF) - angle) / self.HALF)[:, None]}
+        return {Port.READS_THETA_L: -_way_of_the_output(signals)}
 
     def plausible(self, fit: Fit) -> bool:
         """It stays behind."""
         return bool(fit.coefficients[0] > 0)
+
+
+class DraggedSensor(OfTheTorqueSensor):
+    """The torque sensor has a bearing of its own, whose drag it reads but the gear does not feel: c·sgn ω_l too much
+
+    [taghirad1999]. To load and motor that is constant friction; the gear is wound up by so much less than is read,
+    where lost motion and loops wind it up by more. A locked output shows none.
+    """
+
+    name: ClassVar[str] = "dragged_sensor"
+    in_short: ClassVar[str] = "the torque sensor reads a drag of its own"
+    source: ClassVar[str] = "taghirad1999"
+    needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
+
+    def shapes(self, reach: Reach) -> tuple[Shape, ...]:
+        """One, where it turns both ways."""
+        return when(reach.backwards > SOME)
+
+    def has_state(self) -> bool:
+        """It is told by where the output came from."""
+        return True
+
+    def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
+        """One column in the reading."""
+        return {Port.READS_TAU_L: _way_of_the_output(signals)}
+
+    def plausible(self, fit: Fit) -> bool:
+        """It drags."""
+        return bool(fit.coefficients[0] > 0)
+
+    def amount(self, fit: Fit) -> Amount:
+        """Its drag."""
+        return sum_of(fit, "it is", 1, "N·m")
+
+
+def _way_of_the_output(signals: Signals) -> Array:
+    """−1 to 1 (n, 1): its sign since it last moved by more than 2·TURNED; of a locked output next to nothing."""
+    angle = np.ascontiguousarray(np.nan_to_num(signals.theta_l))
+    return np.asarray((angle - play(angle, TURNED)) / TURNED)[:, None]
 
 
 class SensorLoop(OfTheTorqueSensor):

@@ -14,7 +14,7 @@ from rig.analysis.tracing.fit.search import Scored, reduced
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag, WoundCable
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift, SharpError
 from rig.analysis.tracing.nameless.inertias import UnevenInertia
-from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, SensorLoop
+from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, DraggedSensor, SensorLoop
 from rig.analysis.tracing.nameless.readings import (
     ConstantDrift,
     Droop,
@@ -63,6 +63,12 @@ CONFOUNDERS: Final = {
         "The load angle stays behind by the same whichever way the motor turns and whatever the torque, as an encoder "
         "does whose coupling has play; a loop in the spring explains less, and no effect of the library explains it.",
         mimics=frozenset({"hysteretic_stiffness", "lost_motion"}),
+    ),
+    "dragged_sensor": Confounder(
+        DraggedSensor(),
+        "direction",
+        "The torque sensor reads more by the same whichever way the output turns, and nothing winds up by it, as one "
+        "does whose own bearing drags. No effect of the library does so.",
     ),
     "sensor_loop": Confounder(
         SensorLoop(),
