@@ -131,7 +131,7 @@ class SensorLoop(OfTheTorqueSensor):
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"tau_l"}
     remembers: ClassVar[bool] = True
     # N·m, half: from the swing of a slow run to that of a lock test, so near that a loop in the spring fits no better
-    WIDTHS: Final = (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 18.0, 25.0, 40.0)
+    WIDTHS: Final = (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 18.0, 25.0, 32.0, 40.0, 55.0)
 
     def has_state(self) -> bool:
         """A loop."""

@@ -238,11 +238,14 @@ CONFOUNDERS: Final = {
 
 
 def with_confounders(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
-    """With the confounder in the place of its look-alike, wherever it explains more of the fitted runs, or as much with
-    fewer coefficients; and the zero of its channel every run's own, where it leaves that to it."""
+    """With the confounder in the place of its look-alike, or of another one that is there instead, wherever it explains
+    more of the fitted runs, or as much with fewer coefficients; and the zero of its channel every run's own, where it
+    leaves that to it."""
     n = sum(s.design.y[key].size / s.design.eq.noise.kappa[key[1]] for key in s.keys)
-    for confounder in CONFOUNDERS.values():
-        mine = [i for i, term in enumerate(s.design.terms) if term.name in confounder.mimics]
+    instead: dict[str, frozenset[str]] = {}
+    for name, confounder in CONFOUNDERS.items():
+        alike = confounder.mimics | {other for other, of in instead.items() if of & confounder.mimics}
+        mine = [i for i, term in enumerate(s.design.terms) if term.name in alike]
         shapes = confounder.effect.shapes(covered) if confounder.effect.needs <= covered.has else ()
         if mine and shapes:
             bare = reduced(s.design, mine)
@@ -252,7 +255,8 @@ def with_confounders(s: Solution, runs: Sequence[int], covered: Reach) -> Soluti
             if confounder.short:
                 saved += confounder.short * (s.gain - fit(bare).gain)
             mine_own, its_own = (_with_own_zeros(m, runs, confounder.zero_of) for m in (s, other))
-            s = its_own if its_own.gain - mine_own.gain + saved > 0.0 else s
+            if its_own.gain - mine_own.gain + saved > 0.0:
+                s, instead = its_own, instead | {name: confounder.mimics}
     return s
 
 

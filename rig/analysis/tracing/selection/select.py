@@ -92,6 +92,7 @@ def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) 
     if came.isdisjoint(term.name for term in again[0].design.terms):
         return as_it_was
     freed = any(name in came and law.zero_of for name, law in CONFOUNDERS.items())
+    freed &= len(again[0].design.terms) >= len(as_it_was[0].design.terms)  # one for two needs no more to speak for it
     if _left_where_it_slides(p, again) * (FREED if freed else 1.0) < _left_where_it_slides(p, as_it_was):
         return again
     short = [law for name, law in CONFOUNDERS.items() if name in came and law.short]
