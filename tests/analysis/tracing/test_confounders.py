@@ -151,3 +151,24 @@ def test_a_sensors_loop_is_weighed_with_a_zero_for_every_run(
     monkeypatch.setattr(confounders, "fit", lambda d: model(d.terms, d.eq.noise))
     chosen = confounders.with_confounders(spring, (0,), REACH)
     assert [t.name for t in chosen.design.terms] == [kept]
+
+
+@pytest.mark.parametrize(("creeps", "kept"), [(11.0, "sensor_loop"), (13.0, "creep"), (9.0, "sensor_loop")])
+def test_of_laws_that_are_taken_for_the_same_the_one_that_explains_most_stays(
+    monkeypatch: pytest.MonkeyPatch, creeps: float, kept: str
+) -> None:
+    """Whichever is tried first: a creep that had taken a loop's place left a sensor's loop untried (exam 80, 23)."""
+    gains = {"hysteretic_stiffness": 10.0, "creep": creeps, "sensor_loop": 12.0}
+
+    def model(terms: tuple[SimpleNamespace, ...]) -> SimpleNamespace:
+        noise = Noise({}, {"L": 1.0}, {"L": 0.002})
+        design = SimpleNamespace(terms=terms, eq=Equations((), {}, noise), size=2, y={(0, "L"): np.zeros(9)})
+        return SimpleNamespace(design=design, gain=max((gains[t.name] for t in terms), default=0.0), keys=((0, "L"),))
+
+    only = {name: replace(CONFOUNDERS[name], zero_of="", short=0.0) for name in ("creep", "sensor_loop")}
+    monkeypatch.setattr(confounders, "CONFOUNDERS", only)
+    monkeypatch.setattr(confounders, "reduced", lambda d, gone: SimpleNamespace(terms=(), eq=d.eq))
+    monkeypatch.setattr(confounders, "extended", lambda d, term, runs: SimpleNamespace(terms=(*d.terms, term), eq=d.eq))
+    monkeypatch.setattr(confounders, "fit", lambda d: model(d.terms))
+    chosen = confounders.with_confounders(model((SimpleNamespace(name="hysteretic_stiffness"),)), (0,), REACH)
+    assert [t.name for t in chosen.design.terms] == [kept]

@@ -12,6 +12,7 @@ import pytest
 from rig.analysis.tracing.floor import offsets
 from rig.analysis.tracing.rest import drifting_zeros as module
 from rig.analysis.tracing.rest.drifting_zeros import DriftingZeros, drifting_zeros
+from rig.analysis.tracing.selection import verdict
 from rig.model.effect import MEASURED
 
 RUNS, LASTS, EVERY = 24, 20.0, 80.0  # s
@@ -145,3 +146,20 @@ def test_what_a_lock_test_winds_up_is_no_measure_of_a_sensor_where_runs_turn_fre
     alone: Any = SimpleNamespace(runs=[run(140.0, True)])
     assert module.largest_torque(both) == 40.0
     assert module.largest_torque(alone) == 140.0
+
+
+@pytest.mark.parametrize(
+    ("left", "names", "told"), [(1.3, (), True), (2.0, (), False), (1.3, ("cogging_torque",), False)]
+)
+def test_a_drift_is_told_before_next_to_nothing_that_is_left_and_not_before_more(
+    monkeypatch: pytest.MonkeyPatch, left: float, names: tuple[str, ...], told: bool
+) -> None:
+    """What of it falls within runs is above the floor too, and lives in memory (exam 78, case 36)."""
+    rest = SimpleNamespace(told_where="something is left")
+    drift = SimpleNamespace(told_where="time")
+    for step, said in (("_by_a_law", None), ("_drifting", drift), ("_where", []), ("_with_a_remainder", rest)):
+        monkeypatch.setattr(verdict, step, lambda *of, said=said: said)
+    asked: Any = SimpleNamespace(
+        p=None, s=None, names=names, loud=True, worst=(left, left), floors={}, after={}, one=1.0
+    )
+    assert verdict._decided(asked) is (drift if told else rest)
