@@ -22,6 +22,7 @@ def test_several_runs_do_not_go_into_one_file_and_nothing_is_written(
     assert main(["export", *runs, "--as", "csv", "--out", str(tmp_path / "both")]) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["export", "view"])
 def test_it_is_said_of_the_twins_samples_that_they_are_simulated_and_stdout_is_the_path(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

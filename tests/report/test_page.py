@@ -84,6 +84,7 @@ def test_every_element_is_closed_and_every_id_is_there_once() -> None:
     assert len(read().ids()) == len(set(read().ids()))
 
 
+@pytest.mark.slow
 def test_every_reference_inside_the_page_is_met() -> None:
     wanted = {v[1:] for _, name, v in read().attributes if name == "href"}
     wanted |= {

@@ -34,6 +34,7 @@ def untimed(to: Path, shared: Path, drag: float = 0.0) -> Path:
     return to
 
 
+@pytest.mark.slow
 def test_runs_that_declare_their_speed_are_clocked_by_it_and_others_are_not(tmp_path: Path, shared: Path) -> None:
     found = read_campaign(untimed(tmp_path, shared))
     assert {run.name for run in found.runs} == set(NAMES), "none is left out for what most others have"
