@@ -118,6 +118,11 @@ class Signals(Once):
         return self._series[2]
 
     @property
+    def lever(self) -> Array:
+        """1/N − θ̃_p′ along the run, (n,): by how much T acts on the motor, and what the output turns with it."""
+        return np.asarray(1.0 / self.ratio - self.series_slope)
+
+    @property
     def series_value(self) -> Array:
         """θ̃_p along the run, as far as it is known, (n,)."""
         return self._series[0]

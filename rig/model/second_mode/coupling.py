@@ -61,7 +61,7 @@ def wave_generator(s: Signals) -> tuple[Array, Array]:
 
 def through_it(s: Signals, about: float) -> Array:
     """T times the lever at the wave generator's own angle, N·m."""
-    straight = s.torque * (1.0 / s.ratio - s.series_slope)
+    straight = s.torque * s.lever
     if not about:
         return straight
     (slope,) = sums(s.gear.kinematic_error, s.theta_m - about * straight, 1)
@@ -80,4 +80,4 @@ def twisted(s: Signals, psi: Array) -> tuple[Array, Array]:
 
 def tangent(s: Signals) -> tuple[Array, Array]:
     """The same of a twist that is not known yet."""
-    return 1.0 / s.ratio - s.series_slope, s.series_bend
+    return s.lever, s.series_bend

@@ -24,10 +24,9 @@ def hub(s: Signals) -> Mapping[Port, Array]:
         return tuple(made for x in both for made in (x, following(x, s.gear.B_sp / s.gear.K, whole.dt)))
 
     by_load, wound_load, by_spring, wound_spring = s.states(carried)
-    lever = 1.0 / s.ratio - s.series_slope
     return {
         Port.WIND_UP: np.stack([wound_load, wound_spring], 1) / s.gear.K,
-        Port.MOTOR_TORQUE: np.stack([by_load, by_spring], 1) * lever[:, None],
+        Port.MOTOR_TORQUE: np.stack([by_load, by_spring], 1) * s.lever[:, None],
     }
 
 

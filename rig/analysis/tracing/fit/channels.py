@@ -306,8 +306,7 @@ def _motor(s: Signals, f: Smoother, has: Has) -> Columns:
     theta = s.theta_m if "theta_m" in has else s.theta_l * s.ratio  # what it is ahead by has columns of its own
     columns |= {"J_m": f(theta, 2), "B_m": f(theta, 1), "tau_c": f(s.way), "tau_0": np.ones_like(y)}
     if "tau_l" not in has and "theta_l" in has:  # what the load's bearings take is missing in T
-        lever = 1 / s.ratio - s.series_slope
-        columns |= {"B_l": f(s.omega_l * lever), "tau_cl": f(s.way * lever)}
+        columns |= {"B_l": f(s.omega_l * s.lever), "tau_cl": f(s.way * s.lever)}
     return y, columns
 
 

@@ -34,15 +34,10 @@ def _lever(c: Array, s: Signals) -> Iterator[Mark]:
 
 
 def _reads_theta_m(c: Array, s: Signals) -> Iterator[Mark]:
-    yield "A", _lever_arm(s) * c, 0
+    yield "A", s.lever[:, None] * c, 0
     yield "M", -s.gear.J_m * c, 2
     yield "M", -s.gear.B_m * c, 1  # of an order 1 at 100 rpm a seventh of that, a quarter of a period later
     yield "M", (np.nan_to_num(s.torque) * s.series_bend)[:, None] * c, 0  # θ̃_p′ is read at another angle
-
-
-def _lever_arm(s: Signals) -> Array:
-    """1/N − θ̃_p′ (n, 1): by how much T acts on the motor, and what the output turns with it."""
-    return np.asarray(1.0 / s.ratio - s.series_slope)[:, None]
 
 
 def _reads_theta_l(c: Array, s: Signals) -> Iterator[Mark]:
@@ -58,7 +53,7 @@ def _reads_tau_l(c: Array, s: Signals) -> Iterator[Mark]:
     k = s.gear.K
     yield "A", -c / k, 0
     yield "A", s.gear.B_sp / k**2 * c, 1
-    yield "M", -_lever_arm(s) * c, 0
+    yield "M", -s.lever[:, None] * c, 0
     yield "L", c, 0
 
 
@@ -108,7 +103,7 @@ def _passed_on(first: Mark, s: Signals, has: frozenset[str], is_wound: bool) -> 
     yield first
     if is_wound:
         if channel == "A":
-            yield "M", -s.gear.K * _lever_arm(s) * column, order
+            yield "M", -s.gear.K * s.lever[:, None] * column, order
         return  # the clamp takes what acts on the load
     if channel == "A" and "t" in has and order < HIGHEST - 1:
         if "theta_l" not in has:
@@ -119,4 +114,4 @@ def _passed_on(first: Mark, s: Signals, has: frozenset[str], is_wound: bool) -> 
         yield "A", column / s.gear.K, order
         if order < HIGHEST:
             yield "A", -s.gear.B_sp / s.gear.K**2 * column, order + 1
-        yield "M", _lever_arm(s) * column, order
+        yield "M", s.lever[:, None] * column, order

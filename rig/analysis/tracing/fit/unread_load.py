@@ -33,4 +33,4 @@ def beside_load(channel: str, y: Array, columns: dict[str, Array], s: Signals, r
 
 def _share(channel: str, s: Signals) -> Array:
     """Of a torque on the load, what shows in A or M, (n,)."""
-    return np.full(s.t.size, 1.0 / s.gear.K) if channel == "A" else 1.0 / s.ratio - s.series_slope
+    return np.full(s.t.size, 1.0 / s.gear.K) if channel == "A" else s.lever

@@ -12,7 +12,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
 from rig.analysis.tracing.outcome.ripple import DAY
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, read_by_any
 from rig.core.quantiles import Z95
 from rig.model.effect import MEASURED
 
@@ -43,7 +43,7 @@ class MeanDrift:
 
 def mean_drifts(runs: Sequence[Recording]) -> tuple[MeanDrift, ...]:
     """Of every torque that was measured over days, where a channel is missing; () elsewhere."""
-    has = frozenset().union(*(run.has for run in runs))
+    has = read_by_any(runs)
     if has >= MEASURED:
         return ()
     found = (_of(runs, channel) for channel in ("tau_l", "tau_m") if channel in has)

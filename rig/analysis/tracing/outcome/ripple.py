@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from rig.analysis.findings.collected import true_minus
 from rig.analysis.tracing.fit.channels import SENSOR_NAMES
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, read_by_any
 from rig.core.quantiles import Z95
 from rig.core.units import RPM
 from rig.model.effect import MEASURED, Array, Signals
@@ -100,7 +100,7 @@ class Ripple:
 
 def ripples(runs: Sequence[Recording]) -> tuple[Ripple, ...]:
     """Of every torque that was measured, where a channel is missing; () where none is, for then A, M and L say more."""
-    has = frozenset().union(*(run.has for run in runs))
+    has = read_by_any(runs)
     if has >= MEASURED:
         return ()
     found: list[Ripple] = []

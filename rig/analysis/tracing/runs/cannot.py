@@ -10,7 +10,7 @@ import numpy as np
 from rig.analysis.tracing.runs.answered import EVEN as STEADY
 from rig.analysis.tracing.runs.answered import KEPT, lowest_answered, slow_enough
 from rig.analysis.tracing.runs.holdout import grouped
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, read_by_any
 from rig.analysis.tracing.thresholds import BANDWIDTH
 from rig.core.units import RPM, TURN
 
@@ -44,7 +44,7 @@ WOUND: Final = (
 
 def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     """One sentence each, from all runs of a campaign."""
-    has = frozenset().union(*(run.has for run in runs))
+    has = read_by_any(runs)
     found = [sentence for channel, sentence in SENSORS.items() if channel not in has]
     moving = [run for run in runs if run.procedure != "standstill"]
     found += _answered(moving)
@@ -207,7 +207,7 @@ def together(runs: Sequence[Recording]) -> tuple[tuple[str, ...], ...]:
     """
     moving = [run for run in runs if run.procedure != "standstill"]
     found: list[tuple[str, ...]] = [("B_m", "B_ml"), ("B_l", "B_ml")]
-    has = frozenset().union(*(run.has for run in runs))
+    has = read_by_any(runs)
     if "tau_l" not in has:
         found += [("B_m", "B_l")] + ([] if has >= ANGLES else [("tau_c", "tau_cl")])
     if moving and one_way(moving):

@@ -128,6 +128,11 @@ class Recording(Once):
         return replace(self, pieces=_each(self.pieces, lambda piece: reloaded(piece, piece.gear, taken(piece), timed)))
 
 
+def read_by_any(runs: Sequence[Recording]) -> frozenset[str]:
+    """Channels that at least one of them read."""
+    return frozenset().union(*(run.has for run in runs))
+
+
 def mean_way(run: Recording) -> float:
     """1 or −1 of a motor that turned one way all the time, 0 of one that went as far forth as back."""
     return float(np.mean(np.concatenate([piece.way for piece in run.pieces])))

@@ -115,6 +115,7 @@ def try_without_each(selected: Selected, found: Found, bank: Bank, runs: Sequenc
         return selected
 
     def without(name: str) -> Selected | None:
+        """What is selected without that one, where it counts."""
         terms = selected.solution.design.terms
         bare = reduced(selected.solution.design, [i for i, term in enumerate(terms) if term.name == name])
         d = settled(fit(bare), runs, covered).design

@@ -24,6 +24,7 @@ from rig.analysis.tracing.rest.uneven_friction import uneven_friction
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.rest.warm_zeros import warm_zeros
 from rig.analysis.tracing.rest.zeros_by_speed import zeros_by_speed
+from rig.analysis.tracing.runs.recording import read_by_any
 from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
 from rig.analysis.tracing.selection.conclusion import Conclusion
@@ -127,7 +128,7 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
     told = line is None and (asked.has_repeats or total <= EXPLAINED)
     taken = min(share(*most(p.held_out, before, after)), share_of_all(p.held_out, before, after))
     stand = standing(best.coordinate, shared, asked.scores, asked.plain, told) if taken > PART else ()
-    stand = winds_up(stand, best.coordinate, frozenset().union(*(run.has for run in p.eq.runs)))
+    stand = winds_up(stand, best.coordinate, read_by_any(p.eq.runs))
     sentence = line.sentence() if line is not None else of_the_rest(best, total)
     if stand:
         sentence = f"{lacks(stand, *most(p.held_out, before, after), 'most improved')} {sentence}"
@@ -246,7 +247,7 @@ def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, a
         sentence = nothing([c for c in WHOLE if any(key[1] == c for key in p.held_out.floors)], after)
         return Conclusion(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
     rivals, next_run = deciding(p, names, found)
-    if twins := inseparable(names, frozenset().union(*(run.has for run in p.eq.runs))):
+    if twins := inseparable(names, read_by_any(p.eq.runs)):
         rivals, next_run = (
             (*rivals, *(twin for twin in twins if twin not in rivals)),
             next_run or by_table({*names, *twins}),
