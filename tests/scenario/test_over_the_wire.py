@@ -28,6 +28,7 @@ pytestmark = [
     pytest.mark.xdist_group("real time"),
 ]  # one at a time: they share two processors
 HDRIG = [sys.executable, "-m", "rig.cli"]
+SHOWN = "[!.]*"  # hdrig tries a folder by one that is hidden and gone again, maybe while it is listed here
 STALLED = re.compile(
     r"no new .* sample for|did not answer|does not answer|sent no PDOs|did not become|watchdog|heartbeat"
 )
@@ -171,7 +172,7 @@ def test_two_programs_at_one_bench_are_refused_by_name_and_the_first_runs_on(twi
     command = [*HDRIG, "run", "kinematic-error", "--bench", bench, "--out", str(tmp_path), *longer, *patient]
     first = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     until = time.monotonic() + 60
-    while not list(tmp_path.glob("*/*kinematic-error*/journal*")) and time.monotonic() < until:
+    while not list(tmp_path.glob(f"{SHOWN}/*kinematic-error*/journal*")) and time.monotonic() < until:
         time.sleep(0.1)
     at_it = ["--bench", bench]
     verbs = (
@@ -198,7 +199,7 @@ def test_a_program_that_is_killed_leaves_a_drive_without_torque_and_a_run_to_rec
     hdrig = subprocess.Popen([*command, *SHORT], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     running = "OPERATION_ENABLED"
     until = time.monotonic() + 60
-    while not list(tmp_path.glob("*/*kinematic-error*/journal*")) and time.monotonic() < until:
+    while not list(tmp_path.glob(f"{SHOWN}/*kinematic-error*/journal*")) and time.monotonic() < until:
         time.sleep(0.1)
     while twin.ask(do="status")["drive"] != running and time.monotonic() < until:
         time.sleep(0.05)

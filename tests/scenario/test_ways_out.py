@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -20,6 +21,7 @@ from rig.runfile.verify import verify
 
 # a shared machine stalls for tens of ms: the drive of these tests is patient, what is tested is the order of events
 STILL = ["standstill", "--with", "duration=1000"]  # nothing to prove first: 10 s less to wait for
+SHOWN = "[!.]*"  # hdrig tries a folder by one that is hidden and gone again, maybe while it is listed here
 WALL = ["--clock", "wall", "--set", "twin.watchdog=1.0"]
 
 
@@ -33,7 +35,7 @@ def wait_for(root: Path, what: str, process: subprocess.Popen[str], rows_bytes: 
     for _ in range(4000):  # 80 s: the proof takes 10; a run that never comes must not hang the suite
         if process.poll() is not None:
             break
-        for folder in root.glob(f"*/*{what}*"):
+        for folder in root.glob(f"{SHOWN}/*{what}*"):
             journal = folder / "journal-0001.arrows"
             if journal.exists() and journal.stat().st_size > rows_bytes:
                 return folder
@@ -143,9 +145,10 @@ def test_killing_the_recorder_trips_the_run_and_its_rows_are_kept(procedure: lis
 def recorder_of(pid: int) -> int:
     """The child process that records."""
     for entry in Path("/proc").glob("[0-9]*/stat"):
-        fields = entry.read_text().rsplit(")", 1)[1].split()
-        if int(fields[1]) == pid and b"rig.recorder" in (entry.parent / "cmdline").read_bytes():
-            return int(entry.parent.name)
+        with contextlib.suppress(OSError):  # a process that ended meanwhile is not it
+            fields = entry.read_text().rsplit(")", 1)[1].split()
+            if int(fields[1]) == pid and b"rig.recorder" in (entry.parent / "cmdline").read_bytes():
+                return int(entry.parent.name)
     raise AssertionError(f"process {pid} has no recorder")
 
 

@@ -50,7 +50,7 @@ class Rig:
 
     def manifests(self) -> list[dict[str, Any]]:
         """Of every run, in order of their start."""
-        found = [json.loads(path.read_text(encoding="utf-8")) for path in self.root.glob("*/*/manifest.json")]
+        found = [json.loads(path.read_text(encoding="utf-8")) for path in self.root.glob("[!.]*/*/manifest.json")]
         return sorted(found, key=lambda manifest: str(manifest["started_utc"]))
 
     def closed(self, runs: int) -> list[dict[str, Any]]:
