@@ -14,6 +14,7 @@ from rig.analysis.tracing.floor.steps import Steps
 from rig.analysis.tracing.floor.vibration import Line, Vibration
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.model.effect import MEASURED, Effect, Fit, Known, Port, Reach, Signals
+from rig.model.effect.signals import Moved
 from rig.model.effects import CATALOGUE, EACH_RUN, LIBRARY, missed_counts
 from rig.model.fourier import FourierSeries
 from rig.model.gloss import gloss
@@ -49,9 +50,10 @@ def motion(sign: float = 1.0, n: int = 4000) -> Signals:
 
 
 def from_rest(sign: float) -> Signals:
-    """The same, from rest on."""
+    """The same, from rest on, after a run that warmed the drive."""
     s = motion(sign)
-    return dataclasses.replace(s, omega_m=np.r_[0.0, s.omega_m[1:]])
+    warming, rubs = (Moved(s.t[0] - 60.0, s.t[0] - 1.0, 20.0, 400.0),), dataclasses.replace(KNOWN, tau_c=0.2)
+    return dataclasses.replace(s, omega_m=np.r_[0.0, s.omega_m[1:]], past=warming, gear=rubs)
 
 
 @every_effect

@@ -14,18 +14,19 @@ CLOCK, HEAT, SOAK, LOGGED = 0.0, 1.0, 2.0, 3.0
 
 
 class ThermalFrictionDrift(Effect):
-    """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·c(t), c being how cold the drive still is, in one of four laws:
+    """τ_f gains (τ_1·sgn ω_m + B_1·ω_m)·(c(t) − 1), c being how cold the drive still is, in one of four laws:
 
     0: c = exp(−t/t_w), t since the campaign began, or since it went on after a night      [wolf2018]
     1: c = exp(−β·H(t)), H the heat of its own friction, which leaks with t_w: fast runs warm it, pauses cool it
     2: c = exp(−√(t/t_w)), heat that soaks into a thick body: fast at first, for long after
-    3: c = −s·(1 − exp(−(Θ − 20 °C)/s)), Θ a logged temperature: what the friction loses per kelvin at 20 °C, less and
-       less as it gets warm, by e over s; s takes the place of t_w
+    3: c − 1 = −s·(1 − exp(−(Θ − 20 °C)/s)), Θ a logged temperature: what the friction loses per kelvin at 20 °C, less
+       and less as it gets warm, by e over s; s takes the place of t_w
 
-    What is gone at the end of the warm-up is here, what stays is in the baseline. Between runs the clock goes on;
-    after a rest of hours the drive is cold.
+    The baseline's τ_c and B_m are those of the cold drive, what warming takes away is here: the friction a campaign
+    began with was measured, that at the end of a long warm-up may be an extrapolation. Between runs the clock goes
+    on; after a rest of hours the drive is cold.
 
-    An oil whose viscosity falls by e over some kelvins has friction F·exp(−a·(1 − exp(−t/t_w))), a = ln(1 + τ_1/τ_c)
+    An oil whose viscosity falls by e over some kelvins has friction F·exp(−a·(1 − exp(−t/t_w))), a = −ln(1 − τ_1/τ_c)
     where all of it falls alike. No run of a campaign tells that from law 0 with a t_w that is shorter, by up to a/2
     of itself (in two blind campaigns by a few nats of 60 000, in one of them the wrong way round): the interval of
     t_w reaches that far up.
@@ -56,6 +57,7 @@ class ThermalFrictionDrift(Effect):
     SCALE: Final = 40.0  # K over which an oil's viscosity falls by e at room temperature
     SCALES: Final = (12.0, 400.0)  # K
     REFERENCE: Final = 20.0  # °C
+    MOST: Final = 0.8  # of its friction that a drive may lose: no oil leaves less
     BETA: Final = 1e-3  # 1/J: 0.03/K of a lubricant in a gear box of 30 J/K
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -75,15 +77,14 @@ class ThermalFrictionDrift(Effect):
         """Constant and viscous part."""
         t_w, law, beta = shape
         if law == HEAT:
-            cold = np.exp(-beta * signals.heat(t_w))
+            warmed = np.expm1(-beta * signals.heat(t_w))
         elif law == LOGGED:
             scale = float(np.clip(t_w, *self.SCALES))
-            cold = -scale * -np.expm1(
-                -(np.nan_to_num(signals.temperature, nan=self.REFERENCE) - self.REFERENCE) / scale
-            )
+            above = np.nan_to_num(signals.temperature, nan=self.REFERENCE) - self.REFERENCE
+            warmed = scale * np.expm1(-above / scale)
         else:
-            cold = np.exp(-((signals.in_use / t_w) ** (0.5 if law == SOAK else 1.0)))
-        return {Port.MOTOR_TORQUE: np.stack([signals.way * cold, signals.omega_m * cold], 1)}
+            warmed = np.expm1(-((signals.in_use / t_w) ** (0.5 if law == SOAK else 1.0)))
+        return {Port.MOTOR_TORQUE: np.stack([signals.way * warmed, signals.omega_m * warmed], 1)}
 
     def plausible(self, fit: Fit) -> bool:
         """A cold drive has more friction, at an ordinary speed at least."""
@@ -118,7 +119,7 @@ class ThermalFrictionDrift(Effect):
         """The time constant, which is longer where friction falls exponentially with the temperature."""
         t_w, law, _ = fit.shape
         falls = fit.coefficients[0] / fit.tau_c if law == CLOCK and fit.tau_c and fit.tau_c > 0 else 0.0
-        longer = 1.0 + float(np.log1p(max(0.0, falls))) / 2
+        longer = 1.0 - float(np.log1p(-min(max(0.0, falls), self.MOST))) / 2
         return Parameter("t_w", float(t_w), (float(t_w - half), float(t_w * longer + half)), "s")
 
     def _gone(self, fit: Fit) -> Parameter:

@@ -96,7 +96,7 @@ def test_the_time_constant_of_a_warm_up_holds_for_an_oil_as_well(fall: float) ->
         lambda x: x[0] + x[1] * np.exp(-t / x[2]) - friction, [0.1, 0.02, 700.0], x_scale=[0.1, 0.01, 500.0]
     ).x
     assert found[2] < (1.0 - 0.3 * fall) * 820.0
-    fit = Fit(np.array([found[1], 0.0]), (found[2], 0.0, 1e-3), np.zeros((5, 5)), KNOWN, N, tau_c=found[0])
+    fit = Fit(np.array([found[1], 0.0]), (found[2], 0.0, 1e-3), np.zeros((5, 5)), KNOWN, N, tau_c=found[0] + found[1])
     told = {p.name: p.ci95 for p in ThermalFrictionDrift().parameters(fit)}
     assert told["t_w"][0] == pytest.approx(found[2])
     assert 820.0 < told["t_w"][1] < 1.1 * 820.0
