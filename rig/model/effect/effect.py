@@ -115,6 +115,11 @@ class Effect(ABC):
         (k,)."""
         return 0.0, np.zeros(fit.coefficients.size)
 
+    def gives(self, torque: Array, shape: Shape) -> Array:
+        """By what each coefficient adds to the spring's compliance at `torque` (n,), (n, k); (n, 0) of one that is no
+        curve of the spring."""
+        return np.zeros((torque.size, 0))
+
     def expands(self, shape: Shape) -> bool:
         """True when the columns are an expansion about a shape that should equal the coefficients."""
         return False

@@ -18,8 +18,8 @@ Shape = tuple[float, ...]
 @dataclass(frozen=True)
 class Fit:
     """What the data say of one effect: coefficients (k,), then shape (s,); covariance (k+s, k+s) of both together.
-    `beside_series` (k+s+2n+1, k+s+2n+1) is that of both, of the cosines and sines, in turn, of the kinematic error that
-    is `known`, a share of which is known no better than what stays of it, and of 1/K. `tau_c` is the model's Coulomb
+    `beside_series` (k+s+2n, k+s+2n) is that of both and of the cosines and sines, in turn, of the kinematic error that
+    is `known`, a share of which is known no better than what stays of it. `tau_c` is the model's Coulomb
     friction beside the effect, N·m, where it was fitted."""
 
     coefficients: Array
@@ -31,14 +31,12 @@ class Fit:
     tau_c: float | None = None
 
     def half_width(self, gradient: Array) -> float:
-        """Half the 95 % interval of a figure whose gradient by (coefficients, shape) is `gradient` (k+s,), or by them,
-        the series' cosines and sines in turn, and 1/K, as far as it goes: of these nothing is uncertain where that is
-        not told."""
+        """Half the 95 % interval of a figure whose gradient by (coefficients, shape) is `gradient` (k+s,), or by them
+        and the series' cosines and sines in turn: of these nothing is uncertain where that is not told."""
         size = len(self.covariance)
         if gradient.size == size or self.beside_series is None:
             return _half(gradient[:size], self.covariance)
-        size = min(gradient.size, len(self.beside_series))
-        return _half(gradient[:size], self.beside_series[:size, :size])
+        return _half(gradient, self.beside_series)
 
 
 def _half(gradient: Array, covariance: Array) -> float:

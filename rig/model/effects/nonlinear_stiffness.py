@@ -20,14 +20,15 @@ class NonlinearStiffness(Effect):
     k_3 = c·K⁴/T_0² as long as the cubic part is small, and c = 1/K throughout      [tuttle1992]
 
     Of the fourth the soft zone ends as it began: φ gains c·T·exp(−(T/T_0)²), and beyond a few T_0 nothing.
+
+    The baseline's K is told near zero torque, of whatever laws there are: the makers' K_1, the k_1 of a cubic spring.
     """
 
     name: ClassVar[str] = "nonlinear_stiffness"
     in_short: ClassVar[str] = "soft wind-up, cubic or piecewise K1/K2/K3"
     glosses: ClassVar[Mapping[str, str]] = {
         "extra_compliance": "c, by how much the spring gives more below about T_0",
-        "K_near_zero": "K near zero torque",
-        "T_0": "torque about which the spring gets as stiff as K",
+        "T_0": "torque about which the spring gets stiffer",
         "k_3": "cubic part of the spring T = K·φ + k_3·φ³",
     }
     source: ClassVar[str] = "harmonicdrive"
@@ -62,17 +63,26 @@ class NonlinearStiffness(Effect):
         more = np.minimum(size, T_0) if kind == KNEE else T_0 * -np.expm1(-size / T_0)
         return {Port.WIND_UP: (np.sign(signals.torque) * more)[:, None]}
 
+    def gives(self, torque: Array, shape: Shape) -> Array:
+        """dφ/dT of its column."""
+        kind, T_0 = shape
+        x = np.abs(torque) / T_0
+        if kind == CUBIC:
+            slope = 1.0 / (1.0 + 3.0 * _cubic(x) ** 2) - 1.0
+        elif kind == BELOW:
+            slope = (1.0 - 2.0 * x**2) * np.exp(-(x**2))
+        else:
+            slope = (x < 1.0).astype(float) if kind == KNEE else np.exp(-x)
+        return np.asarray(slope)[:, None]
+
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Its size, the extra compliance; stiffness near zero and where it changes; k_3 of a cubic spring."""
+        """Its size, the extra compliance, and where it ends; k_3 of a cubic spring."""
         if fit.shape[0] == CUBIC:
             return (self._k_3(fit),)
-        c, high = fit.coefficients[0], fit.known.K
-        near = 1.0 / (1.0 / high + c)
         by_c, by_t = np.zeros(fit.covariance.shape[0]), np.zeros(fit.covariance.shape[0])
         by_c[0], by_t[-1] = 1.0, 1.0
         return (
-            parameter("extra_compliance", c, fit.half_width(by_c), "rad/(N·m)"),
-            parameter("K_near_zero", near, near**2 * fit.half_width(_beside_1_over_K(fit, by_c)), "N·m/rad"),
+            parameter("extra_compliance", fit.coefficients[0], fit.half_width(by_c), "rad/(N·m)"),
             parameter("T_0", fit.shape[1], fit.half_width(by_t), "N·m"),
         )
 
@@ -88,15 +98,6 @@ class NonlinearStiffness(Effect):
         gradient = np.zeros(fit.covariance.shape[0])
         gradient[0], gradient[-1] = fourth / T_0**2, -2.0 * c * fourth / T_0**3
         return parameter("k_3", c * fourth / T_0**2, fit.half_width(gradient), "N·m/rad³")
-
-
-def _beside_1_over_K(fit: Fit, by: Array) -> Array:
-    """The gradient `by` (k+s,) of a compliance that 1/K adds to: the two are known together better than either."""
-    if fit.beside_series is None:
-        return by
-    whole = np.zeros(len(fit.beside_series))
-    whole[: by.size], whole[-1] = by, 1.0
-    return whole
 
 
 def _cubic(x: Array) -> Array:

@@ -31,7 +31,7 @@ from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
-from rig.model.effects.nonlinear_stiffness import BELOW, CUBIC, KNEE, NonlinearStiffness
+from rig.model.effects.nonlinear_stiffness import BELOW, CUBIC, EXPONENTIAL, KNEE, NonlinearStiffness
 from rig.model.effects.output_once_per_rev import OutputOncePerRev
 from rig.model.effects.position_dependent_friction import PositionDependentFriction
 from rig.model.effects.presliding_friction import LOAD as LOAD_BUILDS_UP
@@ -326,19 +326,12 @@ def test_a_cubic_spring_is_solved_exactly_and_is_its_cube_where_that_is_small() 
     np.testing.assert_allclose(far, -(s.torque**3) / 3000.0**2, atol=1e-3 * np.abs(far).max())
 
 
-def test_a_spring_near_zero_torque_is_known_though_what_it_gives_there_more_than_far_away_is_not() -> None:
-    """Torques that never reach T_0 tell the sum of both compliances, and neither."""
-    k, s, series = 1, 2, 2 * len(KNOWN.kinematic_error.a)
-    along = np.zeros(k + s + series + 1)
-    along[0], along[-1] = -2e-5, 2e-5
-    joint = np.outer(along, along)
-    joint[-1, -1] += (1e-8) ** 2
-    fit = Fit(np.array([3e-5]), (KNEE, 900.0), joint[: k + s, : k + s], KNOWN, N, joint)
-    told = {p.name: p for p in NonlinearStiffness().parameters(fit)}
-    assert told["extra_compliance"].holds_zero
-    near = told["K_near_zero"]
-    assert near.value == pytest.approx(1 / (1 / KNOWN.K + 3e-5))
-    assert near.ci95[1] - near.value == pytest.approx(1.96 * 1e-8 * near.value**2, rel=1e-3)
+@pytest.mark.parametrize("kind", [EXPONENTIAL, KNEE, CUBIC, BELOW])
+def test_what_a_bent_spring_gives_at_a_torque_is_the_slope_of_its_column(kind: float) -> None:
+    at, law, step = np.array([-31.0, -7.0, -0.5, 0.0, 2.0, 12.0, 40.0]), NonlinearStiffness(), 1e-5
+    ends = [dataclasses.replace(motion(n=at.size), torque=at + sign * step) for sign in (1.0, -1.0)]
+    up, down = (law.columns(s, (kind, 11.0))[Port.WIND_UP] for s in ends)
+    np.testing.assert_allclose(law.gives(at, (kind, 11.0)), (up - down) / (2 * step), atol=2e-6)
 
 
 def test_the_cubic_coefficient_is_told_whatever_the_scale_it_was_fitted_with() -> None:

@@ -28,7 +28,7 @@ AFTER = (parameter("K", 7517.0, 0.3, "N·m/rad"), parameter("J_m", 1.6e-3, 8e-6,
 def test_every_parameter_of_the_baseline_has_a_meaning_in_the_json() -> None:
     said = document(replace(made_up.explained(), baseline=BEFORE, baseline_after=AFTER))["baseline"]
     for where, stiffness in (("before_refit", 7500.0), ("parameters", 7517.0)):
-        assert said[where]["K"]["meaning"] == "torsional stiffness"
+        assert said[where]["K"]["meaning"] == "torsional stiffness, near zero torque"
         assert said[where]["K"]["value"] == stiffness
         assert all(entry["meaning"] for entry in said[where].values())
     assert meaning("theta_p_order_4") == "kinematic error, amplitude of order 4 of the motor angle"

@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.curves import Compliance, Curves
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.learnt import damping_of
 from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, solve
@@ -41,26 +42,21 @@ def inertias_by_what_returns(s: Solution, runs: Sequence[int]) -> tuple[Paramete
     shapes of effects are known is in all intervals: a spring that gets stiffer beyond all torques of the fitted `runs`
     leaves its K open."""
     moved, (fitted, _) = by_what_returns(s), _loose(s)
-    spread = _widened(s, fitted, runs, covariance) if fitted else covariance(s)
-    return baseline(replace(s, x=moved.x), spread[: s.x.size, : s.x.size] + moved.more)
+    spread = _widened(s, fitted, runs, covariance) if fitted else covariance(s).copy()
+    spread[: s.x.size, : s.x.size] += moved.more
+    return baseline(replace(s, x=moved.x), spread, fitted)
 
 
-def baseline(s: Solution, spread: Array | None = None) -> tuple[Parameter, ...]:
+def baseline(s: Solution, spread: Array | None = None, slopes: Sequence[tuple[int, int]] = ()) -> tuple[Parameter, ...]:
     """K, B_sp, inertias, damping, friction and the largest orders of θ̃_p, those that were measured; `spread` is the
-    covariance (p, p) of the coefficients."""
+    covariance (p + s, p + s) of the coefficients and of the logarithms of shapes that are loose, (term, which of its)
+    in `slopes`."""
     c, out = covariance(s) if spread is None else spread, list[Parameter]()
     seen = np.diag(s.gram) > UNSEEN
     late = INDEX["lag"]  # which is believed to be small, and no more than that is known where no load is balanced
     seen[late] &= s.design.gram[late, late] > UNSEEN
-    compliance, by = _of_the_gear(s, c)
-    stiff = 1 / compliance if compliance > 0 else np.nan
-    if seen[INDEX["compliance"]] and np.isfinite(stiff):
-        out.append(_of("K", stiff, by * -(stiff**2), c, "N·m/rad"))
-        damping, lag = damping_of(s.value("damping"), stiff, s.value("lag")), s.value("lag")
-        both = _unit(c, "damping") * -(stiff**2) + _unit(c, "lag") * stiff
-        both += by * (2 * s.value("damping") * stiff - lag) * stiff**2
-        found = _of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad")
-        out.append(_beside_the_mesh(found, stiff * lag, s))
+    if seen[INDEX["compliance"]]:
+        out += _of_the_spring(s, c, slopes)
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
     out = [_from_the_reading(p, s.design.forward) if p.name == "lag" else p for p in out]
     if any(run.look.inertia for run in s.design.eq.runs):
@@ -72,15 +68,29 @@ def baseline(s: Solution, spread: Array | None = None) -> tuple[Parameter, ...]:
     return tuple(out)
 
 
-def _of_the_gear(s: Solution, c: Array) -> tuple[float, Array]:
-    """1/K of the gear alone, rad/(N·m), and its gradient by all that is fitted: without what effects in series with it
-    give way by, which the fitted one has too."""
+def _of_the_spring(s: Solution, c: Array, slopes: Sequence[tuple[int, int]]) -> list[Parameter]:
+    """K near zero torque and, of a spring that is not straight, under load; B_sp. None of what is no spring."""
+    curves = Curves(s, _of_the_gear(s, c), slopes)
+    near, swings = curves.near_zero(), curves.swinging()
+    stiff = swings.stiffness
+    if not np.isfinite([near.stiffness, stiff]).all():
+        return []
+    out = [near.told("K", c), *([curves.under_load().told("K_under_load", c)] if curves.any() else [])]
+    damping, lag = damping_of(s.value("damping"), stiff, s.value("lag")), s.value("lag")
+    both = _unit(c, "damping") * -(stiff**2) + _unit(c, "lag") * stiff
+    both += swings.by * (2 * s.value("damping") * stiff - lag) * stiff**2
+    found = _of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad")
+    return [*out, _beside_the_mesh(found, stiff * lag, s)]
+
+
+def _of_the_gear(s: Solution, c: Array) -> Compliance:
+    """1/K of the gear alone: without what effects in series with it give way by, which the fitted one has too."""
     compliance, by = s.value("compliance"), _unit(c, "compliance")
     for i, term in enumerate(s.design.terms):
         more, gradient = term.effect.softens(of_term(s, c, i))
         compliance -= more
         by[s.design.place(i)] -= gradient
-    return compliance, by
+    return Compliance(compliance, by)
 
 
 def _beside_the_mesh(damping: Parameter, late: float, s: Solution) -> Parameter:
@@ -126,7 +136,7 @@ def _order(s: Solution, c: Array, n: int) -> Parameter:
         more = term.effect.unloaded(n, s.design.eq.runs[0].gear, term.shape)
         if more.size:
             waves[:, s.design.place(i)] = more
-    both = waves @ s.x
+    both = waves[:, : s.x.size] @ s.x
     size = max(float(np.hypot(*both)), 1e-15)
     return _of(f"theta_p_order_{n}", size / ARCSEC, both @ waves / size / ARCSEC, c, "arcsec")
 
@@ -247,7 +257,7 @@ def of_term(s: Solution, c: Array, i: int, slopes: Sequence[tuple[int, int]] = (
     """The part of coefficients and covariance that belongs to one term."""
     by, first = _spread(s, len(c), i, slopes), s.design.eq.runs[0]
     place = s.design.place(i)
-    beside = np.vstack([by, np.eye(len(c))[[INDEX[name] for name in (*SERIES, "compliance")]]])
+    beside = np.vstack([by, np.eye(len(c))[[INDEX[name] for name in SERIES]]])
     joint = beside @ c @ beside.T
     k = len(by)
     tau_c = s.value("tau_c") if s.gram[INDEX["tau_c"], INDEX["tau_c"]] > UNSEEN else None

@@ -10,7 +10,8 @@ from rig.analysis.tracing.outcome.honest import ORDER
 from rig.model.effect import Parameter
 
 PARAMETERS: Final = {  # symbol, what it is
-    "K": ("K", "torsional stiffness"),
+    "K": ("K", "torsional stiffness, near zero torque"),
+    "K_under_load": ("K_L", "torsional stiffness at the largest torque there was"),
     "B_sp": ("B_sp", "damping of the flexspline"),
     "J_m": ("J_m", "inertia, motor side"),
     "B_m": ("B_m", "viscous friction, motor side and mesh: B_m + B_ml, which no run tells apart"),
@@ -27,7 +28,7 @@ PARAMETERS: Final = {  # symbol, what it is
 }
 
 EQUATIONS: Final = {  # what is fitted in which equation alone, as long as every sensor is there
-    "kinematic error": ("K", "B_sp"),
+    "kinematic error": ("K", "K_under_load", "B_sp"),
     "motor torque": ("J_m", "B_m", "tau_c", "tau_0", "gain", "lag_m"),
     "shaft torque": ("J_l", "B_l", "tau_cl", "tau_l0", "lag"),
 }

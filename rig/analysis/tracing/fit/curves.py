@@ -1,0 +1,90 @@
+"""A spring that is not straight: its compliance near zero torque, under load, and where its torque swings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.model import Solution
+from rig.core.quantiles import Z95
+from rig.model.effect import Array, Parameter, parameter
+
+STEP: Final = 1e-4  # relative, of a shape parameter: a compliance is smooth in them but for a knee
+
+
+@dataclass(frozen=True)
+class Compliance:
+    """Of the gear, rad/(N·m), and its gradient by all that is fitted, the shapes that are loose last, by their
+    logarithms."""
+
+    value: float
+    by: Array
+
+    @property
+    def stiffness(self) -> float:
+        """N·m/rad, NaN of what is no spring."""
+        return 1.0 / self.value if self.value > 0 else np.nan
+
+    def told(self, name: str, c: Array) -> Parameter:
+        """Its stiffness with an interval; `c` (p, p) is the covariance of all that is fitted."""
+        half = self.stiffness**2 * Z95 * float(np.sqrt(max(0.0, float(self.by @ c @ self.by))))
+        return parameter(name, self.stiffness, half, "N·m/rad")
+
+
+@dataclass(frozen=True)
+class Curves:
+    """What bends the spring beside the `fitted` compliance; `slopes` are the loose shapes, (term, which of its)."""
+
+    s: Solution
+    fitted: Compliance
+    slopes: Sequence[tuple[int, int]]
+
+    def any(self) -> bool:
+        """Whether a law in the model does."""
+        return any(term.effect.gives(np.zeros(1), term.shape).shape[1] for term in self.s.design.terms)
+
+    def near_zero(self) -> Compliance:
+        """Near zero torque, where a maker's K_1 is and the k_1 of a cubic spring."""
+        return self._at(np.zeros(1), np.ones(1))
+
+    def under_load(self) -> Compliance:
+        """At the largest torque there was."""
+        pieces = [piece for run in self.s.design.eq.runs for piece in run.pieces if piece.t.size]
+        return self._at(np.array([max(float(np.abs(piece.torque).max()) for piece in pieces)]), np.ones(1))
+
+    def swinging(self) -> Compliance:
+        """Where the torque changes, which is where the damper beside the spring is seen."""
+        if not self.any():
+            return self.fitted
+        eq = self.s.design.eq
+        pieces = [piece for i, run in enumerate(eq.runs) if (i, "A") in eq.rows for piece in run.pieces]
+        torque, rate = (np.concatenate([getattr(p, what) for p in pieces]) for what in ("torque", "torque_rate"))
+        return self._at(torque, rate**2)
+
+    def _at(self, torque: Array, weight: Array) -> Compliance:
+        """The mean over `torque` (n,) by `weight` (n,)."""
+        value, by = self.fitted.value, self.fitted.by.copy()
+        for i, term in enumerate(self.s.design.terms):
+            mean = _mean(term, torque, weight)
+            if mean.size:
+                place = self.s.design.place(i)
+                value += float(mean @ self.s.x[place])
+                by[place] += mean
+                for at, (owner, j) in enumerate(self.slopes):
+                    if owner == i:
+                        ends = [_mean(_stretched(term, j, sign * STEP), torque, weight) for sign in (1.0, -1.0)]
+                        by[self.s.design.size + at] += (ends[0] - ends[1]) @ self.s.x[place] / (2 * STEP)
+        return Compliance(value, by)
+
+
+def _mean(term: Term, torque: Array, weight: Array) -> Array:
+    return np.asarray(weight @ term.effect.gives(torque, term.shape) / weight.sum())
+
+
+def _stretched(term: Term, j: int, share: float) -> Term:
+    shape = tuple(x * (1.0 + share) if at == j else x for at, x in enumerate(term.shape))
+    return Term(term.effect, shape)
