@@ -132,6 +132,58 @@ def test_a_delay_that_may_be_the_drag_of_the_mesh_leaves_the_damping_open_below(
     assert below - above == pytest.approx(wider, rel=0.05, abs=0.1 * above)
 
 
+@pytest.mark.parametrize("both_ways", [True, False])
+def test_constant_friction_of_runs_that_go_one_way_is_told_with_the_zero_and_open(
+    both_ways: bool, rng: np.random.Generator
+) -> None:
+    at, key, size, omega = np.array([INDEX[n] for n in ("B_m", "tau_c", "tau_0")]), (0, "M"), len(BASELINE), waves(0)
+    way = np.sign(omega) if both_ways else -np.ones(omega.size)  # backward, if one way only
+    z = np.stack([way * np.abs(omega), way, np.ones(omega.size)], 1)
+    y = z @ np.array([3e-3, 0.17, 0.02]) + 1e-3 * rng.standard_normal(omega.size)
+    eq = Equations((RUN,), {}, Noise({"M": 1e-3}, {"M": 1.0}, {"M": np.inf}))
+    parts = {key: (Part(Bare(z), at, None),)}
+    empty = Design(eq, (), (), {key: y}, {}, parts, np.zeros((size, size)), np.zeros(size))
+    gram, right, _ = normal(empty, {key: parts[key][0]})
+    found = parameters.baseline(fit(Design(eq, (), (), empty.y, {}, parts, gram, right)))
+    tau_c = next(p for p in found if p.name == "tau_c")
+    assert tau_c.ci95[0] < 0.17 < tau_c.ci95[1]
+    assert tau_c.value == pytest.approx(0.17 if both_ways else 0.15, abs=2e-3)
+    assert (tau_c.ci95[0] == 0.0) is not both_ways
+    assert (tau_c.ci95[1] > 0.29) is not both_ways
+
+
+@pytest.mark.parametrize("far", [20.0, 900.0])
+def test_a_spring_that_gets_stiffer_is_told_near_zero_torque_and_under_load(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, far: float
+) -> None:
+    """A soft zone that ends at `far` N·m or so, also far beyond all torques: then 1/K and what is soft are known
+    together and not apart."""
+    torque, rate, soft = 20.0 * waves(0), 20.0 * waves(1), 4e-5 if far > 100 else 9e-6
+    spring = CATALOGUE["nonlinear_stiffness"]
+    column = np.sign(torque) * far * -np.expm1(-np.abs(torque) / far)
+    local = 1 / K + soft * np.exp(-np.abs(torque) / far)  # of the spring at every torque
+    y = torque / K + soft * column - B_SP * local**2 * rate
+    y = y + 1e-8 * rng.standard_normal(y.size)
+    at, key, size = np.array([INDEX["compliance"], INDEX["damping"], len(BASELINE)]), (0, "A"), len(BASELINE) + 1
+    piece = SimpleNamespace(torque=torque, torque_rate=rate, t=np.arange(torque.size), gear=SimpleNamespace(K=K))
+    gear = SimpleNamespace(J_l=0.8, K=K)
+    run: Any = SimpleNamespace(**{**vars(RUN), "gear": gear, "ratio": 50.0, "pieces": (piece,)})
+    rows: Any = {key: SimpleNamespace(keep=np.ones(torque.size, bool), own=np.zeros((torque.size, 0)))}
+    eq = Equations((run,), rows, Noise({"A": 1e-8}, {"A": 1.0}, {"A": np.inf}))
+    parts = {key: (Part(Bare(np.stack([torque, rate, column], 1)), at, None),)}
+    empty = Design(eq, (Term(spring, (0.0, far)),), (1,), {key: y}, {}, parts, np.zeros((size, size)), np.zeros(size))
+    gram, right, _ = normal(empty, {key: parts[key][0]})
+    monkeypatch.setattr(parameters, "third_rate", lambda run: 0.0 * torque)
+    found = {
+        p.name: p for p in parameters.baseline(fit(Design(eq, empty.terms, (1,), {key: y}, {}, parts, gram, right)))
+    }
+    largest = 1 / K + soft * np.exp(-np.abs(torque).max() / far)
+    for name, true in (("K", 1 / (1 / K + soft)), ("K_under_load", 1 / largest)):
+        half = (found[name].ci95[1] - found[name].ci95[0]) / 2
+        assert abs(found[name].value - true) < 2 * half < 0.02 * true
+    assert found["B_sp"].value == pytest.approx(B_SP, rel=0.03)
+
+
 def test_two_loops_make_one_loss_with_the_interval_of_their_sum() -> None:
     loop, shape = CATALOGUE["hysteretic_stiffness"], (4.0, 1.0)  # friction beside the spring: one coefficient
     each, known = 1e-5, SimpleNamespace(K=K)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rig.analysis.tracing.fit.beside_zero import beside_its_zero
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.curves import Compliance, Curves
@@ -58,6 +59,7 @@ def baseline(s: Solution, spread: Array | None = None, slopes: Sequence[tuple[in
     if seen[INDEX["compliance"]]:
         out += _of_the_spring(s, c, slopes)
     out += [_of(n, s.value(n), _unit(c, n), c, unit) for n, unit in PLAIN.items() if seen[INDEX[n]]]
+    out = [beside_its_zero(p, s, c) for p in out]
     out = [_from_the_reading(p, s.design.forward) if p.name == "lag" else p for p in out]
     if any(run.look.inertia for run in s.design.eq.runs):
         known = s.design.eq.runs[0].gear.J_l + s.value("inertia")
