@@ -75,7 +75,19 @@ def test_where_next_to_nothing_comes_back_least_squares_stand() -> None:
     s = solved(1, scatter=0.5, waves=0.1)
     moved = by_what_returns(s)
     assert np.array_equal(moved.x, s.x)
-    assert not moved.more.any()
+
+
+def test_an_inertia_of_slow_runs_is_as_unsure_as_both_ways_of_finding_it_differ() -> None:
+    inside = {"of least squares": 0, "told": 0}
+    for seed in range(30):
+        s = solved(seed, scatter=0.5, waves=2.5)
+        at = INDEX["J_m"]
+        more = by_what_returns(s).more[at, at]
+        for words, variance in (("of least squares", 0.0), ("told", more)):
+            half = 1.96 * np.sqrt(covariance(s)[at, at] + variance)
+            inside[words] += abs(s.x[at] - J["J_m"]) < half
+    assert inside["of least squares"] == 0
+    assert inside["told"] >= 27
 
 
 def test_three_runs_are_too_few_to_say_how_far_they_differ() -> None:

@@ -4,6 +4,10 @@ Friction that scatters within a run, and whatever else no sensor reads, is left 
 acts on: acceleration and residual go against each other, and least squares find an inertia that is too small, by 0.1 to
 3 % in runs at speed, however many there are. What makes the kinematic error come back with every turn is no such
 torque, so the mean acceleration by motor angle is an instrument: by it the estimate is right  [fuller1987, sec. 1.4]
+
+Where next to nothing of the acceleration comes back, in slow runs, it is noise of an encoder twice differentiated: that
+too makes an inertia too small, and the instrument is too weak to mend it. How far the two are apart is what the
+interval is wide by then.
 """
 
 from __future__ import annotations
@@ -48,17 +52,23 @@ class _Along:
 
 
 def by_what_returns(s: Solution) -> Moved:
-    """The solution with its inertias by what comes back with the motor's angle, those for which enough does."""
+    """The solution with its inertias by what comes back with the motor's angle, those for which enough does; the others
+    as unsure as they differ by it."""
     names = [name for name in INERTIAS if s.gram[INDEX[name], INDEX[name]] > UNSEEN]
-    made: dict[str, _Along] = {}
+    moved, unsure = Moved(s.x, np.zeros_like(s.gram)), np.zeros_like(s.gram)
     while names:
         along = _along(s, names)
         made = {name: _of(s, i, INERTIAS[name], along) for i, name in enumerate(names)}
         good = [name for name in names if made[name].share >= SHARE and made[name].residual.size >= FEWEST]
         if good == names:
-            return _moved(s, along, list(made.values()))
+            moved = _moved(s, along, list(made.values()))
+            break
+        for i, name in enumerate(names):
+            if name not in good and made[name].share > 0:
+                off = along[:, i] * (made[name].residual.sum() / made[name].columns[:, i].sum())
+                unsure += np.outer(off, off)
         names = good
-    return Moved(s.x, np.zeros_like(s.gram))
+    return Moved(moved.x, moved.more + unsure)
 
 
 def _along(s: Solution, names: list[str]) -> Array:
