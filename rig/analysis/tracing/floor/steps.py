@@ -63,6 +63,8 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     and goes winds the gear of `compliance` [rad/(N·m)] up, or seems to."""
     keys = [k for k in e if k[1] == "A"]
     onward = {key: _onward(eq, key) for key in keys}
+    for key in keys:  # a motor whose speed ripples: what is certain, and stays to the end of the run
+        onward[key] = onward[key] | _certain(e[key], _onward(eq, key, rippling=True))
     sure = [abs(size) for key in keys for _, size in _sure(e[key], onward[key])]
     # once it is known how many counts are lost at a time, smaller evidence of the same loss will do
     usual = float(np.median(sure)) if sure else 0.0
@@ -100,6 +102,15 @@ def _sure(e: Array, onward: Mask) -> list[tuple[int, float]]:
     of a fine encoder are in the noise of a third of a second."""
     every = (0.0, np.inf)
     return jumps(e, onward, STEP, every) or jumps(e, onward, STEP, every, window=FAR)
+
+
+def _certain(e: Array, going: Mask) -> Mask:
+    """Rows (n,) of jumps where the motor is `going` on that nothing else makes, and after which all the rest of the run
+    is as far off."""
+    out = np.zeros(e.size, bool)
+    for row, size in _sure(e, going):
+        out[row] = _for_good(e, abs(size))[row]
+    return out
 
 
 def _in_other_parts(
@@ -176,9 +187,9 @@ def _columns(eq: Equations, run: int, row: int, side: float) -> dict[str, Array]
     return dict(eq.term(run, Term(LOST, (side, 0.5 * (t[row] + t[max(row - 1, 0)])))))
 
 
-def _onward(eq: Equations, key: Key) -> Mask:
+def _onward(eq: Equations, key: Key, rippling: bool = False) -> Mask:
     """True for rows with a window on both sides in which the motor neither turned back nor rested, and goes on at one
-    speed, (n,).
+    speed, (n,); `rippling`, its mean before and after alone.
 
     At a reversal everything with memory or play goes over to its other branch, and some of it where the load is
     accelerated: that looks like a step and is none.
@@ -188,7 +199,8 @@ def _onward(eq: Equations, key: Key) -> Mask:
     turned = np.concatenate([[0], np.cumsum(np.abs(np.diff(_filled(way))) > 0) + np.cumsum(_rested(theta, t))])
     reach = WINDOW + EDGE
     first, last = np.maximum(np.arange(t.size) - reach, 0), np.minimum(np.arange(t.size) + reach, t.size - 1)
-    return np.asarray((turned[first] == turned[last]) & _at_one_speed(theta, t, reach))
+    steady = _as_fast(theta, t, 2 * reach) if rippling else _at_one_speed(theta, t, reach)
+    return np.asarray((turned[first] == turned[last]) & steady)
 
 
 def _for_good(e: Array, size: float) -> Mask:
@@ -208,6 +220,16 @@ def _at_one_speed(theta: Array, t: Array, reach: int) -> Mask:
     took = [np.maximum(t[b] - t[a], 1e-12) for a, b in itertools.pairwise(edges)]
     speed = np.abs(np.array(gone) / np.array(took))
     return np.asarray(np.ptp(speed, axis=0) <= SAME_SPEED * speed.max(0))
+
+
+def _as_fast(theta: Array, t: Array, reach: int) -> Mask:
+    """Rows (n,) before which the mean speed of `reach` rows is that of as many after."""
+    rows = np.arange(t.size)
+    before, after = np.maximum(rows - reach, 0), np.minimum(rows + reach, t.size - 1)
+    speeds = np.abs(
+        [(theta[b] - theta[a]) / np.maximum(t[b] - t[a], 1e-12) for a, b in ((before, rows), (rows, after))]
+    )
+    return np.asarray(np.ptp(speeds, axis=0) <= AS_FAST * speeds.max(0))
 
 
 def _rested(theta: Array, t: Array) -> Array:
