@@ -19,11 +19,11 @@ from rig.core.errors import UsageError
 Columns = dict[str, Any]
 
 
-def columns() -> Columns:
-    """12.6 turns of the motor in 10 s at 500 Hz."""
+def columns(seed: int = 1) -> Columns:
+    """12.6 turns of the motor in 10 s at 500 Hz; of another `seed` the noise is another."""
     t = np.arange(5000) / 500.0
     theta_m = 2 * np.pi * 1.26 * t
-    noise = np.random.default_rng(1).normal(0.0, 1e-6, (4, t.size))
+    noise = np.random.default_rng(seed).normal(0.0, 1e-6, (4, t.size))
     theta_l = theta_m / 50 + 2e-4 * np.cos(2 * theta_m) + noise[0]
     return {"t": t, "theta_m": theta_m, "theta_l": theta_l, "tau_m": 0.3 + noise[1], "tau_l": 1.0 + noise[2]}
 
@@ -31,11 +31,12 @@ def columns() -> Columns:
 def campaign(root: Path, change: Callable[[Columns], Columns], runs: int = 2, **said: Any) -> Path:
     """Run folders of another logger whose columns went through `change`; `said` goes into the manifest."""
     for number in range(runs):
+        seed = sum(str(root).encode()) + number  # no two runs have the same noise
         folder = root / f"run-{number}"
         folder.mkdir(parents=True)
         about = {"schema": "hdrig.run/1", "procedure": "constant_torque", "gear": {"ratio": 50}, **said}
         (folder / "manifest.json").write_text(json.dumps(about))
-        pq.write_table(pa.table(change(columns())), folder / "samples.parquet")
+        pq.write_table(pa.table(change(columns(seed))), folder / "samples.parquet")
     return root
 
 

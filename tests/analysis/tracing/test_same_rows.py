@@ -31,3 +31,20 @@ def test_a_copy_begun_at_the_same_time_is_left_out(
     assert bool(said) is is_left_out
     assert all("the same rows as slow_ke_1" in note for note in said)
     assert {run.name for run in found.runs} >= set(SOME)
+
+
+@pytest.mark.parametrize("began", [None, "2026-11-03T09:00:00+00:00"])
+def test_a_copy_of_which_nobody_says_when_it_began_or_that_all_began_at_once_is_left_out(
+    shared: Path, tmp_path: Path, began: str | None
+) -> None:
+    """Manifests of other loggers need not say it."""
+    for name in SOME:
+        shutil.copytree(shared / "cases" / "open-1" / name, tmp_path / name)
+        manifest = json.loads((tmp_path / name / "manifest.json").read_text())
+        del manifest["started_utc"]
+        (tmp_path / name / "manifest.json").chmod(0o644)
+        (tmp_path / name / "manifest.json").write_text(json.dumps(manifest | ({"started_utc": began} if began else {})))
+    shutil.copytree(tmp_path / "slow_ke_1", tmp_path / "slow_ke_1_copy")
+    found = read_campaign(tmp_path)
+    assert found.left_out == ("slow_ke_1_copy",)
+    assert any("it holds the same rows as slow_ke_1" in note for note in found.notes)

@@ -1,7 +1,8 @@
 """A run that lies in a campaign twice under two names, as a copied folder does, is no repeat of itself.
 
-Manifests of other loggers give no uid; rows that are the same to the last bit, begun at the same time, do as well. As a
-repeat it would make a floor of nothing, and a held-out run that was fitted.
+Manifests of other loggers give no uid, and often no date; rows that are the same to the last bit, begun at the same
+time as far as anybody says, do as well. As a repeat it would make a floor of nothing, and a held-out run that was
+fitted.
 """
 
 from __future__ import annotations
@@ -13,8 +14,7 @@ from rig.analysis.tracing.runs.recording import Recording
 
 
 def same_rows(runs: Sequence[Recording]) -> dict[str, str]:
-    """Why a run is left out, by its name: the first of those with the same rows stays. None where nobody says when any
-    run began: what a plant without noise does twice has the same rows."""
+    """Why a run is left out, by its name: the first of those with the same rows stays."""
     first: dict[bytes, str] = {}
     out: dict[str, str] = {}
     for run in runs:
