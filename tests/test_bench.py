@@ -52,6 +52,7 @@ def test_a_twin_over_a_wire_that_is_not_there_is_said_to_be_startable(tmp_path: 
         (["loop.rate=20"], ["watchdog", "three periods"]),
         (["control.Kp.value.x=5"], ["no key"]),
         (["control.Kp=1" + "0" * 400], ["digits"]),
+        (["limits.torque=1", "limits.torque=4"], ["limits.torque was set to 1 before; expected once"]),
         (["twin.friction_noise_s=1e-30"], ["friction_noise_s", "0.001"]),
     ],
 )

@@ -24,10 +24,13 @@ def override(text: str, assignments: list[str], source: str, origin: str = "decl
     def keys(at: Any) -> list[str]:
         return [str(key) for key in at] if isinstance(at, dict) else []
 
+    made: dict[str, str] = {}
     for assignment in assignments:
         key, equals, value = assignment.partition("=")
         if not equals:
             raise UsageError(f"--set {assignment}: expected key=value, for example control.Kp=5")
+        if made.setdefault(key.strip(), value.strip()) != value.strip():
+            raise UsageError(f"--set {assignment}: {key.strip()} was set to {made[key.strip()]} before; expected once")
         at: Any = document
         *path, last = key.strip().split(".")
         for part in path:

@@ -48,6 +48,8 @@ def limits_of(assignments: Sequence[str]) -> dict[str, Any]:
         if not (word and equals):
             raise UsageError(f"--limit '{assignment}': {FORM}")
         name = _figure(assignment, word)
+        if name in limits:
+            raise UsageError(f"--limit '{assignment}': {word} was given a limit before; expected one for each figure")
         limits[name] = None if text == NONE else _bounds(assignment, text)
         if limits[name] is not None:
             _refuse_order(assignment, word, name)

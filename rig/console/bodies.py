@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from rig.core.nearest import nearest
 
@@ -21,13 +21,30 @@ OF_ACT: Mapping[str, tuple[str, ...]] = {
     "answer": ("prompt_id", "done"),
     "take_control": (),
 }  # hold, stop and halt are not here: they are done whatever else their body says
+TEXTS = ("bench", "clock", "procedure", "plan", "resume", "note", "text")
+SHAPES: Mapping[str, tuple[Callable[[object], bool], str]] = {
+    **dict.fromkeys(TEXTS, (lambda said: isinstance(said, str), "a text")),
+    "overrides": (
+        lambda said: isinstance(said, list) and all(isinstance(one, str) for one in said),
+        "a list of texts, KEY=VALUE",
+    ),
+    "parameters": (lambda said: isinstance(said, dict), "a table of names and values"),
+}  # what a key has to be where it is given and not null
 OF_CHECK = ("procedure", "plan", "resume", "parameters", "bench")  # what is only looked at
 FORWARDED = ("id", "act", *dict.fromkeys(key for keys in OF_ACT.values() for key in keys))  # to the station
 
 
-def unknown_of_act(act: str, asked: Iterable[object]) -> str:
-    """The refusal of keys that `act` does not have; "" where there are none."""
-    return unknown(f"{act}", asked, OF_ACT[act], EVERY) if act in OF_ACT else ""
+def wrong_of_act(act: str, asked: Mapping[str, object]) -> str:
+    """The refusal of keys that `act` does not have, or that hold what they cannot; "" where there are none."""
+    return unknown(f"{act}", asked, OF_ACT[act], EVERY) or misshapen(act, asked) if act in OF_ACT else ""
+
+
+def misshapen(who: str, asked: Mapping[str, object]) -> str:
+    """The refusal of a key that holds another kind of thing; "" where there is none."""
+    for key, (fits, expected) in SHAPES.items():
+        if asked.get(key) is not None and not fits(asked[key]):
+            return f"{who}: {key} is {str(asked[key])[:60]!r}; expected {expected}"
+    return ""
 
 
 def unknown(who: str, asked: Iterable[object], known: tuple[str, ...], always: tuple[str, ...] = ()) -> str:

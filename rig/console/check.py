@@ -15,7 +15,7 @@ from rig.campaign.plan import read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.preview import plan_lines, shaft_torque, stored_energy, tightest
 from rig.campaign.sweeps import plan_named
-from rig.console.bodies import OF_CHECK, unknown
+from rig.console.bodies import OF_CHECK, misshapen, unknown
 from rig.core.errors import HdrigError, NotReady, UsageError
 from rig.core.operator import Rigging
 from rig.core.procedure import Procedure
@@ -32,7 +32,7 @@ def check(asked: Mapping[str, Any], source: str, overrides: list[str]) -> dict[s
     """For a procedure, a plan, or a campaign to go on with (`resume`, its folder), on the bench called `source`. Never
     raises for what a person could have typed.
     """
-    mistyped = unknown("check-parameters", asked, OF_CHECK)
+    mistyped = unknown("check-parameters", asked, OF_CHECK) or misshapen("check-parameters", asked)
     if mistyped:
         return wrong({WHOLE: mistyped})
     try:
@@ -44,6 +44,15 @@ def check(asked: Mapping[str, Any], source: str, overrides: list[str]) -> dict[s
         return _procedure(bench, str(asked.get("procedure", "")), asked.get("parameters") or {})
     except HdrigError as error:
         return wrong({WHOLE: str(error)})
+
+
+def unread(source: str, overrides: list[str]) -> str:
+    """Why no bench is made of `source`; "" where one is."""
+    try:
+        read(source, overrides)
+    except HdrigError as error:
+        return str(error)
+    return ""
 
 
 def wrong(problems: dict[str, str]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any, final
 
 from rig.console.bodies import FORWARDED, OF_CHECK
 from rig.console.campaigns import ours
-from rig.console.check import WHOLE, check, wrong
+from rig.console.check import WHOLE, check, unread, wrong
 from rig.console.gate import CONTROL, Answer, Gate
 from rig.console.link import DEAF, Link
 from rig.console.state import rights
@@ -101,6 +101,8 @@ class ActDesk:
             return f"a note has 1 to {LONGEST_TEXT} characters"
         if act == "connect" and asked.get("clock") not in CLOCKS:
             return f"clock is {str(asked['clock'])[:60]!r}; expected wall or virtual"
+        if act == "connect":
+            return await asyncio.to_thread(unread, str(asked.get("bench") or ""), asked.get("overrides") or [])
         if act == "answer" and not isinstance(asked.get("done"), bool):
             return "an answer says done: true or false"
         if act == "jog":

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from rig.console.bodies import unknown_of_act
+from rig.console.bodies import wrong_of_act
 from rig.station.rules import ACTS, ALWAYS
 
 REMEMBERED = 500  # ids: a page that repeats itself does so within seconds
@@ -70,7 +70,7 @@ class Gate:
             return "an act needs an id of its own: 'id', a UUID"
         if act in ALWAYS and (act != "hold" or self.holds(page)):
             return ""
-        wrong = unknown_of_act(act, asked)
+        wrong = wrong_of_act(act, asked)
         if wrong or act == CONTROL:
             return wrong
         if not self.holds(page):

@@ -31,6 +31,11 @@ def test_what_is_no_limit_is_refused_with_the_form_expected(said: str) -> None:
         limits_of([said])
 
 
+def test_two_limits_of_one_figure_are_refused_by_whatever_names() -> None:
+    with pytest.raises(UsageError, match="'kinematic_error_peak_to_peak=100': kinematic_error_peak_to_peak was given"):
+        limits_of(["peak-to-peak=60", "kinematic_error_peak_to_peak=100"])
+
+
 @pytest.mark.parametrize(
     ("said", "words"),
     [

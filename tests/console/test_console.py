@@ -385,7 +385,7 @@ def test_a_campaign_is_stopped_at_a_prompt_and_gone_on_with(hand: Hand, tmp_path
         ("../..", "is not in"),
         ("{root}", "no campaign.json"),
         ("{root}/\0", "is not in"),
-        (7, "is not in"),
+        (7, "resume is '7'; expected a text"),
     ],
 )
 def test_a_campaign_that_is_none_of_ours_is_not_gone_on_with(ready: Hand, folder: Any, why: str) -> None:

@@ -54,6 +54,18 @@ def test_a_key_an_act_does_not_have_is_refused_with_those_it_has(act: str, key: 
     assert said in Gate().refuse(asked(act, **{key: 1}), "a", IDLE | {act: True})
 
 
+@pytest.mark.parametrize(("act", "key", "value", "said"), [
+    ("connect", "overrides", 5, "connect: overrides is '5'; expected a list of texts, KEY=VALUE"),
+    ("connect", "overrides", [{"a": 1}], "expected a list of texts, KEY=VALUE"),
+    ("connect", "bench", {"a": 1}, "expected a text"),
+    ("note", "text", 5, "note: text is '5'; expected a text"),
+    ("start", "parameters", ["cycles=1"], "expected a table of names and values"),
+])  # fmt: skip
+def test_a_key_that_holds_another_kind_of_thing_is_refused(act: str, key: str, value: Any, said: str) -> None:
+    assert said in Gate().refuse(asked(act, **{key: value}), "a", IDLE | {act: True})
+    assert Gate().refuse(asked(act, **{key: None}), "a", IDLE | {act: True}) == ""
+
+
 def test_every_act_says_which_keys_it_has_but_those_that_are_always_done() -> None:
     assert set(OF_ACT) == {*ACTS, CONTROL} - set(ALWAYS)
 

@@ -142,7 +142,7 @@ def odd_runs(runs: Sequence[Run], name: str) -> dict[str, str]:
     out = [r for r in read if isinstance(r, Said)]
     found = [r for r in read if isinstance(r, Recording) and not _unfit(r)]
     refuse_odd_angles(found, name)
-    for sort in (_odd, _same_gear, _odd_torques, _odd_balances):
+    for sort in (_copies, _odd, _same_gear, _odd_torques, _odd_balances):
         found, odd = sort(found)
         out += odd
     refuse_odd_torques(found, name)
