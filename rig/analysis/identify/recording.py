@@ -14,6 +14,7 @@ from rig.analysis.findings.result import Array
 from rig.analysis.kinematic_error.ratio import doubt
 from rig.analysis.motion.angle import is_another_ratio, measured_ratio
 from rig.analysis.motion.declared import declared
+from rig.analysis.motion.mistaken import mistaken
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.core.errors import DataError
 from rig.core.numbers import number
@@ -132,7 +133,7 @@ def _another_ratio(run: Recording) -> str:
     if is_another_ratio(run.ratio / measured, float(np.ptp(run.theta_m)) / run.ratio):
         return (
             f"the motor goes {measured:.4g} times as far as the load, the declared gear.ratio is {run.ratio:g}: "
-            "another gear, or an angle in another unit than rad"
+            f"{mistaken(run.ratio, measured) or 'another gear, or an angle in another unit than rad'}"
         )
     K = declared(run.source.declared, "K")
     return doubt(run.motion, run.tau_l, K) if run.tau_l is not None and K is not None else ""

@@ -6,6 +6,7 @@ import numpy as np
 
 from rig.analysis.findings.result import Array
 from rig.analysis.motion.angle import measured_ratio
+from rig.analysis.motion.mistaken import mistaken
 from rig.analysis.motion.source import Motion
 from rig.core.units import DEG, TURN
 
@@ -42,9 +43,9 @@ def disagreement(motion: Motion, turns: float | None = None) -> str:
     if not np.ptp(motion.theta_l):
         gone = float(np.ptp(motion.theta_m)) / TURN
         return f"The load angle does not move while the motor goes {gone:.3g} turns: θ̃ means nothing."
-    return (
-        f"The encoders say {turns:.5g} motor turns per load turn, the manifest says {motion.ratio:g}: θ̃ means nothing."
-    )
+    why = mistaken(motion.ratio, turns)
+    said = f"The encoders say {turns:.5g} motor turns per load turn, the manifest says {motion.ratio:g}"
+    return f"{said}: θ̃ means nothing{f'; {why}' if why else ''}."
 
 
 def doubt(motion: Motion, tau_l: Array | None, K: float | None) -> str:

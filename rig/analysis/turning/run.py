@@ -8,11 +8,13 @@ from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.intervals import amplitude_interval
 from rig.analysis.findings.result import Check, Estimate
 from rig.analysis.kinematic_error import words
+from rig.analysis.kinematic_error.lobes import may_read_twice, reads_a_part
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
 from rig.analysis.kinematic_error.ratio import disagreement, doubt, turns_per_turn
 from rig.analysis.kinematic_error.slips import slipped
 from rig.analysis.motion.declared import declared
 from rig.analysis.motion.degrees import turning_of
+from rig.analysis.motion.mistaken import mistaken
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.speed import Speed
 from rig.analysis.motion.strokes import Stroke, find_strokes
@@ -23,7 +25,7 @@ from rig.analysis.smoothness.measure import smoothness as smoothness_of
 from rig.analysis.turning.spectrum import add_orders
 from rig.analysis.turning.speed import add_speed_figures
 from rig.analysis.turning.torsion_words import add_torsion
-from rig.analysis.turning.units import unlikely, wrong_unit
+from rig.analysis.turning.units import unlikely_time, unlikely_torque, wrong_unit
 from rig.analysis.turning.weight import other_weight
 from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
@@ -39,6 +41,8 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         found.sentence = (
             f"The motor made no whole turn in one direction once the reversals are cut (it moved {span:.2f} turns)."
         )
+        if why := mistaken(motion.ratio, turns_per_turn(motion)):
+            found.sentence = f"{found.sentence[:-1]}; {why}."
         found.cannot.append(found.sentence)
         found.inconclusive = found.sentence
         return
@@ -51,7 +55,10 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
         found.sentence = "No kinematic error was computed."
         found.reject(wrong)
         return
-    found.cannot += unlikely(run, motion)
+    found.cannot += unlikely_torque(run)
+    if doubtful := unlikely_time(motion):
+        found.cannot.append(doubtful)
+        found.inconclusive = doubtful
     evenness = _judge_smoothness(found, smoothness_of(motion, strokes, reference, speed)) if slow else ()
     if motion.theta_l is None:
         found.cannot.append(NO_LOAD)
@@ -62,6 +69,8 @@ def add_turning(found: Findings, run: Source, motion: Motion, speed: Speed | Non
             found.inconclusive = found.inconclusive or found.sentence
         return
     _with_load(found, run, motion, strokes, slow, evenness)
+    if doubtful:
+        found.sentence = f"{doubtful} {found.sentence}"
 
 
 def _judge_smoothness(found: Findings, smoothness: Smoothness | None) -> tuple[Estimate, ...]:
@@ -126,6 +135,11 @@ def _kinematic_error(found: Findings, run: Source, motion: Motion, strokes: list
     found.sentence = headline(found, ke, slow)
     if short := words.cut_short(found, ke):
         found.inconclusive, found.sentence = short, f"{short} {found.sentence}"
+    if part := reads_a_part(ke.profile.amplitude):
+        found.checks.append(Check("lobes", False, part))
+        found.inconclusive, found.sentence = part, f"{part} {found.sentence}"
+    if note := may_read_twice(ke.profile.amplitude):
+        found.cannot.append(note)
     if slip := slipped(motion, main, ke.strokes):
         found.checks.append(Check("slips", False, slip))
         found.inconclusive, found.sentence = slip, f"{slip} {found.sentence}"

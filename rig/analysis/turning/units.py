@@ -46,15 +46,20 @@ def wrong_unit(motion: Motion, strokes: list[Stroke], reference: Array | None, c
     return ""
 
 
-def unlikely(run: Source, motion: Motion) -> Iterator[str]:
-    """What of time and torques no gear has, a sentence each: what goes by them is another, what goes by angles is not.
-    The same bounds refuse a file at import."""
+def unlikely_time(motion: Motion) -> str:
+    """That no rig is read so slowly or fast; "" where it may be. The same bounds refuse a file at import."""
     apart = float(np.median(np.diff(motion.t))) if motion.t is not None and motion.t.size > 1 else PERIOD[1]
-    if not PERIOD[0] <= apart <= PERIOD[1]:
-        yield (
-            f"The unit of t may be another one: {apart:.3g} s between rows, expected {PERIOD[0]:g} to {PERIOD[1]:g} s; "
-            "speeds and durations go by it."
-        )
+    if PERIOD[0] <= apart <= PERIOD[1]:
+        return ""
+    return (
+        f"The unit of t may be another one: {apart:.3g} s between rows, expected {PERIOD[0]:g} to {PERIOD[1]:g} s; "
+        "speeds and durations go by it."
+    )
+
+
+def unlikely_torque(run: Source) -> Iterator[str]:
+    """What of torques no gear has, a sentence each: what goes by them is another, what goes by angles is not. The same
+    bounds refuse a file at import."""
     for name, limit in TORQUE.items():
         tau = run.column(name)
         peak = float(np.nanmax(np.abs(tau))) if tau is not None and np.isfinite(tau).any() else 0.0

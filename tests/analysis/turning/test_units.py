@@ -47,6 +47,33 @@ def test_milliseconds_taken_for_seconds_are_named_as_such() -> None:
     assert "1/1000: is t in ms? Expected s." in result.sentence
 
 
+def commanded_by_nobody(made: MadeRun) -> MadeRun:
+    columns = {k: v for k, v in made.columns.items() if k != "theta_ref"}
+    return replace(made, columns=columns, manifest={**made.manifest, "conditions": {}, "encoders": {}})
+
+
+def test_a_speed_that_goes_by_a_doubtful_unit_of_time_is_no_verdict() -> None:
+    made = commanded_by_nobody(slow_run(1))
+    result = analyse(replace(made, columns={**made.columns, "t": 1e3 * made.columns["t"]}))
+    assert result.verdict is Verdict.INCONCLUSIVE
+    assert result.sentence.startswith("The unit of t may be another one: 1 s between rows, expected ")
+
+
+def test_sides_taken_for_each_other_are_told() -> None:
+    made = commanded_by_nobody(slow_run(1))
+    swapped = {"theta_m": made.columns["theta_l"], "theta_l": made.columns["theta_m"]}
+    result = analyse(replace(made, columns={**made.columns, **swapped}))
+    assert result.verdict is Verdict.INCONCLUSIVE
+    assert "; θ_m and θ_l seem to be taken for each other: expected the motor's angle in theta_m." in result.sentence
+
+
+def test_angles_that_read_a_half_are_told_by_the_orders() -> None:
+    made = commanded_by_nobody(slow_run(1, amplitude_turns=12.0))
+    result = analyse(scaled(made, 0.5))
+    assert result.verdict is Verdict.INCONCLUSIVE
+    assert "both angles seem to read 1/2 of what they should" in result.sentence
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [

@@ -13,6 +13,7 @@ import numpy as np
 
 from rig.analysis.motion.angle import is_another_ratio
 from rig.analysis.motion.degrees import DEGREES, STEP, Turning, come_again_in_degrees
+from rig.analysis.motion.mistaken import mistaken
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.errors import UsageError
 from rig.core.units import RPM
@@ -90,11 +91,10 @@ def _ratio(run: Recording) -> str | None:
 
 def _reason(ratio: float, slope: float) -> str:
     """What would make θ_l go `slope` of θ_m/`ratio`."""
-    for factor, words in ((DEGREES, "θ_l seems to be in degrees"), (1 / DEGREES, "θ_m seems to be in degrees")):
-        if abs(slope / factor - 1) < ALIKE:
-            return f"{words}, expected rad"
     if abs(slope) < 1e-6:
         return "θ_l does not move"
+    if why := mistaken(ratio, ratio / slope):
+        return why
     if slope < 0:
         return "one of the angles has the other sign"
     return f"θ_m/θ_l is {ratio / slope:.4g}, the declared gear.ratio {ratio:g}, or an angle is in another unit than rad"
