@@ -61,7 +61,7 @@ def open_runs(folders: Sequence[Path], say: Say) -> Opened:
     if not found:
         raise DataError(f"no run is left to identify from: {'; '.join(said)[:300]}")
     refuse_other_zeros(found)
-    said += _mixed(runs)
+    said += [*_mixed(runs), *_undeclared(found)]
     said += [f"{run.name}: samples.parquet {why}" for run in runs if (why := changed(run.path, run.manifest))]
     return Opened(runs, found, (*said, *(f"{run.name}: {note}" for run in runs for note in notes(run.misfits))))
 
@@ -115,6 +115,15 @@ def _mixed(runs: Sequence[Run]) -> list[str]:
     from rig.analysis.tracing.runs.mixed import mixed
 
     return mixed(runs)
+
+
+def _undeclared(found: Sequence[Recording]) -> list[str]:
+    """Of runs in which something hangs on the output that their manifests say nothing of: it counts as drag."""
+    from rig.analysis.motion.strokes import find_strokes
+    from rig.analysis.turning.weight import other_weight
+
+    told = [(r.name, other_weight(r.source, r.motion, find_strokes(r.motion), r.tau_l)) for r in found if not r.locked]
+    return [f"{name}: {why}" for name, why in told if why]
 
 
 def _where(folders: Sequence[Path]) -> str:

@@ -13,6 +13,7 @@ from rig.analysis.findings.intervals import t95
 from rig.analysis.identify.dynamics import J_L, J_M, LAG, spring_columns
 from rig.analysis.identify.fit import Fits
 from rig.analysis.identify.friction import SLOW
+from rig.analysis.identify.gains import disagreement
 from rig.analysis.identify.mode import add_mode, damping_gradient
 from rig.analysis.identify.possible import refuse_impossible, strange, taken_out
 from rig.analysis.identify.solve import Solved
@@ -104,6 +105,7 @@ def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
     _motor(found, cannot, fits, said, sigma)
     refuse_impossible(found)
     cannot += [*strange(found, said), *taken_out(found)]
+    cannot += [why] if (why := disagreement(fits.means, fits.ratio)) else []
     cannot += stand_in(found, fits, said, sigma)
     if "tau_s" not in found:
         unknown = found["tau_c"].note == NOTHING
