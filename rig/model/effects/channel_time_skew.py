@@ -12,6 +12,7 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 LOAD, MOTOR, TORQUE = 0.0, 1.0, 2.0  # of the first shape parameter: which reading is late
 READING = {LOAD: "theta_l", MOTOR: "theta_m", TORQUE: "tau_l"}
 STEADY, ON_AND_ON, EACH_RUN, ALONG_RUN = 0.0, 1.0, 2.0, 3.0  # of the third: whether it grows, and since when
+AVERAGED = 4.0  # of the third: late as what is the mean of a while
 SOME, WIDE = 0.1, 1.5  # share of the rows that go back; fastest over slowest
 SOON = 1e-4  # s: a shift by less is its rate
 KNOTS = np.linspace(0.0, 1.0, 13)  # of the curve along a run, shares of it
@@ -24,6 +25,9 @@ class ChannelTimeSkew(Effect):
     In A a late motor angle is an early load angle; what tells them apart is which inertia's torque comes late. Where
     two clocks run apart, δ grows along the campaign, δ + δ'·t, or, where they are set anew for every run, along each
     run; and a buffer that fills and is emptied makes any curve of the run's share that has gone by.
+
+    An amplifier that gives the mean of the last w seconds, or a low-pass of one time constant, is late and blunt: its
+    torque reads T(t − δ) + σ²/2·T̈ to second order, δ = w/2 and σ = w/√12 of a mean, δ = σ of a low-pass.
     """
 
     name: ClassVar[str] = "channel_time_skew"
@@ -32,6 +36,7 @@ class ChannelTimeSkew(Effect):
         "skew_theta_l": "δ, by how much the load angle is read too late",
         "skew_theta_m": "δ, by how much the motor angle is read too late",
         "skew_tau_l": "δ, by how much the shaft torque is read too late, as by a low-pass of its own of √2/(2πδ)",
+        "window_tau_l": "w, the while whose mean the shaft torque is read as; like a low-pass of time constant w/√12",
         "drift_theta_l": "δ', by how much the load angle's lateness grows per second",
         "drift_theta_m": "δ', by how much the motor angle's lateness grows per second",
         "drift_tau_l": "δ', by how much the shaft torque's lateness grows per second",
@@ -47,6 +52,8 @@ class ChannelTimeSkew(Effect):
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     LONG: Final = 1e3  # s, after which δ' is told
     LARGEST: Final = 30e-3  # s; a sensor that is polled over a serial line is some ten milliseconds late
+    BEYOND: Final = 0.1  # of w: what higher orders than the second add to it in waves as long as 2·w
+    BLUNT: Final = 1.5  # σ² over δ²: of a low-pass it is 1, of a mean a third
     STEPS: Final = (0.0, 1e-3, -1e-3, 4e-3, -4e-3)  # s; the refit takes the coefficient as next expansion point
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -57,6 +64,8 @@ class ChannelTimeSkew(Effect):
         various = reach.backwards > SOME or reach.fastest > WIDE * reach.slowest
         if not various:
             return tuple(steady)
+        if READING[TORQUE] in reach.has:
+            steady += [(TORQUE, step, AVERAGED) for step in self.STEPS if step >= 0]
         growing = [(side, 0.0, since) for side in sides for since in (ON_AND_ON, EACH_RUN)]
         # a curve has many numbers, and what it does to the angles is the same whichever of them is late; where the
         # wind-up was not measured it takes on whatever the weight has wrong
@@ -70,6 +79,8 @@ class ChannelTimeSkew(Effect):
         port, late = self._late(signals, side, delta)
         if drifts == ALONG_RUN:
             return {port: -late[:, None] * along(_share(signals))}
+        if drifts == AVERAGED:
+            return {port: np.stack([-late, _bend(signals, delta)], 1)}
         since = _start(signals) if drifts == EACH_RUN else 0.0
         return {port: -np.stack([late, late * (signals.t - since) / self.LONG], 1) if drifts else -late[:, None]}
 
@@ -104,6 +115,10 @@ class ChannelTimeSkew(Effect):
         skew = parameter(f"skew_{name}", fit.coefficients[0], fit.half_width(unit[0]), "s")
         if not fit.shape[2]:
             return (skew,)
+        if fit.shape[2] == AVERAGED:
+            window = float(np.sqrt(max(24.0 * fit.coefficients[1], 1e-18)))  # σ²/2 = w²/24
+            half = fit.half_width(12.0 / window * unit[1]) + self.BEYOND * window
+            return skew, parameter(f"window_{name}", window, half, "s")
         name = f"in_run_{name}" if fit.shape[2] == EACH_RUN else name
         rate = parameter(f"drift_{name}", fit.coefficients[1] / self.LONG, fit.half_width(unit[1]) / self.LONG, "s/s")
         return skew, rate
@@ -116,14 +131,30 @@ class ChannelTimeSkew(Effect):
         of = (("skew", mean), ("change_in_run", unit[int(np.argmax(at))] - unit[int(np.argmin(at))]))
         return tuple(parameter(f"{what}_{name}", float(x[: at.size] @ at), fit.half_width(x), "s") for what, x in of)
 
+    def plausible(self, fit: Fit) -> bool:
+        """What is the mean of a while is late by about as much as it is blunt."""
+        if fit.shape[2] != AVERAGED:
+            return True
+        delay, half_square = fit.coefficients
+        return bool(0.0 < 2.0 * half_square < self.BLUNT * delay**2 and delay > 0.0)
+
     def expands(self, shape: Shape) -> bool:
         """About the skew itself."""
         return True
 
     def about(self, shape: Shape, coefficients: Array) -> Shape:
         """The skew as found, within a quarter of a period of what the low-pass passes; one that drifts is small."""
-        about = 0.0 if shape[2] else float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST))
+        about = (
+            0.0 if shape[2] not in (STEADY, AVERAGED) else float(np.clip(coefficients[0], -self.LARGEST, self.LARGEST))
+        )
         return (shape[0], about, shape[2])
+
+
+def _bend(signals: Signals, delta: float) -> Array:
+    """T̈(t + δ) of the smooth reading, N·m/s²."""
+    bend = np.gradient(np.nan_to_num(signals.torque_rate), signals.dt)
+    at = signals.dt * np.arange(bend.size)
+    return np.asarray(np.interp(at + delta, at, bend))
 
 
 def along(share: Array) -> Array:

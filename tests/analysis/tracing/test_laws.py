@@ -20,7 +20,7 @@ from rig.model.effects.angle_dependent_stiffness import (
     TOGETHER,
     AngleDependentStiffness,
 )
-from rig.model.effects.channel_time_skew import ALONG_RUN, EACH_RUN, KNOTS, ChannelTimeSkew
+from rig.model.effects.channel_time_skew import ALONG_RUN, AVERAGED, EACH_RUN, KNOTS, ChannelTimeSkew
 from rig.model.effects.channel_time_skew import LOAD as LOAD_LATE
 from rig.model.effects.channel_time_skew import MOTOR as MOTOR_LATE
 from rig.model.effects.channel_time_skew import TORQUE as TORQUE_LATE
@@ -375,6 +375,30 @@ def test_a_late_torque_reads_what_was_and_will_read_what_is(late: float) -> None
     delta = late or 1e-4
     now = 25.0 * np.sin(2 * np.pi * 0.7 * (s.t + delta) + 0.2)
     np.testing.assert_allclose(delta * column[20:-20], (s.torque - now)[20:-20], atol=2e-3 * 25.0 * delta / 1e-3)
+
+
+def test_a_torque_that_is_the_mean_of_a_while_is_late_and_blunt() -> None:
+    """Of 12 ms, at 8 and 17 Hz: to a hundredth of what it does, and a delay alone leaves many times that."""
+    w, t = 12e-3, 1e-3 * np.arange(6000)
+    waves = [(2 * np.pi * f, phase) for f, phase in ((8.0, 0.3), (17.0, 1.1))]
+    true = sum(np.cos(o * t + p) for o, p in waves)
+    read = sum(np.sinc(o * w / 2 / np.pi) * np.cos(o * (t - w / 2) + p) for o, p in waves)
+    rate = sum(-o * np.sinc(o * w / 2 / np.pi) * np.sin(o * (t - w / 2) + p) for o, p in waves)
+    s = dataclasses.replace(motion(n=t.size), t=t, dt=1e-3, torque=read, torque_rate=rate)
+    effect, inner = ChannelTimeSkew(), slice(100, -100)
+    too_much = (read - true)[inner]
+    for law, least, most in ((AVERAGED, 0.0, 0.01), (0.0, 0.03, 0.3)):
+        z = effect.columns(s, (TORQUE_LATE, w / 2, law))[Port.READS_TAU_L][inner]
+        found = np.linalg.lstsq(z, too_much, rcond=None)[0]
+        assert least < np.std(too_much - z @ found) / np.std(too_much) < most
+        assert found[0] == pytest.approx(w / 2, rel=0.05)
+        if law:
+            fit = Fit(found, (TORQUE_LATE, w / 2, law), np.zeros((5, 5)), KNOWN, N)
+            told = {p.name: p for p in effect.parameters(fit)}["window_tau_l"]
+            assert told.ci95[0] < w < told.ci95[1]
+            assert effect.plausible(fit)
+            assert not effect.plausible(dataclasses.replace(fit, coefficients=found * np.array([1.0, -1.0])))
+            assert not effect.plausible(dataclasses.replace(fit, coefficients=found * np.array([0.2, 1.0])))
 
 
 @pytest.mark.parametrize("late", [5e-3, 0.02, -0.02])
