@@ -24,6 +24,7 @@ def told(
     torque: np.ndarray,
     names: set[str] = SPRING,
     weights: np.ndarray = WEIGHTS,
+    wave: np.ndarray | None = None,
 ) -> bool:
     """Whether it is the sensor's, of runs with those zeros of the wind-up [rad] and of the load's balance [N·m]."""
     runs = [
@@ -37,8 +38,17 @@ def told(
         for w in weights
     ]
     rows = {(i, c) for i in range(len(runs)) for c in "AL"}
-    eq = SimpleNamespace(runs=runs, rows=rows, noise=SimpleNamespace(local={"A": WANDER}))
-    s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), value=lambda name: {"compliance": SOFT}[name])
+    means = np.zeros(weights.size) if wave is None else wave
+    term = SimpleNamespace(name="torque_sensor_crosstalk")
+    made = {"A": -SOFT, "L": 1.0}
+    eq = SimpleNamespace(
+        runs=runs,
+        rows=rows,
+        noise=SimpleNamespace(local={"A": WANDER}),
+        term=lambda run, _: {c: np.full((5, 1), of * means[run]) for c, of in made.items()},
+    )
+    design = SimpleNamespace(eq=eq, terms=(term,), place=lambda i: slice(0, 1))
+    s: Any = SimpleNamespace(design=design, x=np.ones(1), value=lambda name: {"compliance": SOFT}[name])
     monkeypatch.setattr(module, "offset", lambda _, run, channel: {"A": angle, "L": torque}[channel][run])
     return is_the_sensors(s, names, range(len(runs)))
 
@@ -60,3 +70,14 @@ def test_what_the_load_does_not_feel_is_the_springs(monkeypatch: pytest.MonkeyPa
 def test_zeros_of_a_sensor_that_wander_are_no_curve(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator) -> None:
     wander = 0.015 * rng.standard_normal(WEIGHTS.size)
     assert not told(monkeypatch, -SOFT * wander, wander)
+
+
+def test_the_mean_of_a_wave_in_runs_that_go_round_but_in_part_is_no_curve(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    """Runs under load go over a part of a turn, those without any number of turns."""
+    wave = np.where(WEIGHTS < 0, 0.3, 0.0)
+    noise = rng.standard_normal((2, WEIGHTS.size))
+    angle, torque = WANDER * noise[0] - SOFT * wave, OF_THE_SENSOR * noise[1] + wave
+    assert told(monkeypatch, angle, torque)
+    assert not told(monkeypatch, angle, torque, wave=wave)

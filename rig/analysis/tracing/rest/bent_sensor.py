@@ -36,11 +36,19 @@ def is_the_sensors(s: Solution, names: Collection[str], runs: Sequence[int]) -> 
     if np.unique(np.round(hung / APART)).size < WEIGHTS:
         return False
     read = np.array([eq.runs[i].mean_torque for i in mine])
-    angle, torque = (_bent(np.array([offset(s, i, c) for i in mine]), read) for c in "AL")
+    angle, torque = (_bent(np.array([_zero(s, i, c) for i in mine]), read) for c in "AL")
     if float(np.sqrt(np.mean(angle**2))) < PLAINLY * eq.noise.local["A"]:
         return False
     left = angle + s.value("compliance") * torque
     return bool(left @ left < SAME * (angle @ angle))
+
+
+def _zero(s: Solution, run: int, channel: str) -> float:
+    """What the baseline leaves in the mean of a channel, less what all effects make of it that bend no spring: a wave
+    of the output's angle has a mean in a run that goes round but in part."""
+    others = [i for i, term in enumerate(s.design.terms) if term.name not in SPRINGS]
+    made = [(s.design.eq.term(run, s.design.terms[i]).get(channel), s.x[s.design.place(i)]) for i in others]
+    return offset(s, run, channel) - sum(float(np.mean(z @ x)) for z, x in made if z is not None)
 
 
 def _bent(x: Array, torque: Array) -> Array:
