@@ -120,6 +120,12 @@ class Effect(ABC):
         curve of the spring."""
         return np.zeros((torque.size, 0))
 
+    def drags(self, shape: Shape) -> float:
+        """How much of what it does to dφ/dT counts twice in what the damper beside the spring delays, B_sp·(dφ/dT)²·Ṫ:
+        1 of a curve or a loop in the whole torque, a half in that which the spring holds, 0 where it is no part of the
+        spring or comes as late as the damper makes it."""
+        return 0.0
+
     def expands(self, shape: Shape) -> bool:
         """True when the columns are an expansion about a shape that should equal the coefficients."""
         return False

@@ -82,6 +82,10 @@ class HystereticStiffness(Effect):
         held = state * np.abs(torque) if law == self.WEDGE else state
         return {Port.WIND_UP: lagged(held, signals.gear.damped_for, signals.dt)[:, None]}
 
+    def drags(self, shape: Shape) -> float:
+        """A loop in the whole torque; friction's state is late as the damper is."""
+        return 1.0 if shape[1] in (self.PLAYS, self.SWELLING) else 0.0
+
     def _wound(self, signals: Signals) -> Array:
         """φ as the encoders show it, without its noise; from the torque where one of them is missing."""
         phi = signals.theta_m / signals.ratio - signals.theta_l - signals.series_value

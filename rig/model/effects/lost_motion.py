@@ -56,6 +56,10 @@ class LostMotion(Effect):
             return {Port.WIND_UP: side[:, None]}
         return {Port.WIND_UP: np.hstack([side[:, None], *(wave(n * signals.theta_m, side) for n in (1, 2))])}
 
+    def drags(self, shape: Shape) -> float:
+        """A curve in what the spring holds."""
+        return 0.5
+
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The whole gap, 2b."""
         gap = np.zeros(fit.covariance.shape[0])

@@ -75,6 +75,10 @@ class NonlinearStiffness(Effect):
             slope = (x < 1.0).astype(float) if kind == KNEE else np.exp(-x)
         return np.asarray(slope)[:, None]
 
+    def drags(self, shape: Shape) -> float:
+        """A curve in the whole torque."""
+        return 1.0
+
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """Its size, the extra compliance, and where it ends; k_3 of a cubic spring."""
         if fit.shape[0] == CUBIC:

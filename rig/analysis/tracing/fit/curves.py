@@ -11,7 +11,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution
 from rig.core.quantiles import Z95
-from rig.model.effect import Array, Parameter, parameter
+from rig.model.effect import Array, Parameter, Port, Signals, parameter
 
 STEP: Final = 1e-4  # relative, of a shape parameter: a compliance is smooth in them but for a knee
 
@@ -57,13 +57,17 @@ class Curves:
         return self._at(np.array([max(float(np.abs(piece.torque).max()) for piece in pieces)]), np.ones(1))
 
     def swinging(self) -> Compliance:
-        """Where the torque changes, which is where the damper beside the spring is seen."""
-        if not self.any():
-            return self.fitted
-        eq = self.s.design.eq
+        """Where the torque changes, which is where the damper beside the spring is seen: what laws in the spring change
+        by with it, the mean by how fast it does."""
+        value, by, eq = self.fitted.value, self.fitted.by.copy(), self.s.design.eq
         pieces = [piece for i, run in enumerate(eq.runs) if (i, "A") in eq.rows for piece in run.pieces]
-        torque, rate = (np.concatenate([getattr(p, what) for p in pieces]) for what in ("torque", "torque_rate"))
-        return self._at(torque, rate**2)
+        for i, term in enumerate(self.s.design.terms):
+            if share := term.effect.drags(term.shape):
+                place = self.s.design.place(i)
+                slopes = share * _slopes(term, pieces)
+                value += float(slopes @ self.s.x[place])
+                by[place] += slopes
+        return Compliance(value, by)
 
     def _at(self, torque: Array, weight: Array) -> Compliance:
         """The mean over `torque` (n,) by `weight` (n,)."""
@@ -79,6 +83,17 @@ class Curves:
                         ends = [_mean(_stretched(term, j, sign * STEP), torque, weight) for sign in (1.0, -1.0)]
                         by[self.s.design.size + at] += (ends[0] - ends[1]) @ self.s.x[place] / (2 * STEP)
         return Compliance(value, by)
+
+
+def _slopes(term: Term, pieces: Sequence[Signals]) -> Array:
+    """By what each column of the wind-up changes with the torque (k,), in the mean over Ṫ²."""
+    along, size = np.zeros(0), 0.0
+    for piece in pieces:
+        columns = term.effect.columns(piece, term.shape)[Port.WIND_UP]
+        rate = np.nan_to_num(piece.torque_rate) * piece.dt
+        more = rate[1:] @ np.diff(columns, axis=0)
+        along, size = (along + more if along.size else more), size + float(rate[1:] @ rate[1:])
+    return np.asarray(along / max(size, 1e-300))
 
 
 def _mean(term: Term, torque: Array, weight: Array) -> Array:

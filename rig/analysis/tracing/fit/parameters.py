@@ -35,6 +35,7 @@ PLAIN = {
 ROUNDS = 4  # each leaves a fiftieth of what the one before left
 NO_LAG = 1e-9  # s
 STEP = 1e-4  # relative, of a coefficient or shape: figures are smooth in them
+MEAN = 0.3  # of what laws in the spring do to B_sp: a mean slope of theirs is taken for that at every torque
 LEAST = 0.5  # of what is fitted: below it the series has no sum that its terms would tell
 
 
@@ -82,7 +83,13 @@ def _of_the_spring(s: Solution, c: Array, slopes: Sequence[tuple[int, int]]) -> 
     both = _unit(c, "damping") * -(stiff**2) + _unit(c, "lag") * stiff
     both += swings.by * (2 * s.value("damping") * stiff - lag) * stiff**2
     found = _of("B_sp", _of_the_series(s, damping, stiff), both, c, "N·m·s/rad")
+    plain = damping_of(s.value("damping"), curves.fitted.stiffness, lag)
+    found = _wider(found, MEAN * abs(damping - plain))
     return [*out, _beside_the_mesh(found, stiff * lag, s)]
+
+
+def _wider(p: Parameter, by: float) -> Parameter:
+    return replace(p, ci95=(p.ci95[0] - by, p.ci95[1] + by))
 
 
 def _of_the_gear(s: Solution, c: Array) -> Compliance:
