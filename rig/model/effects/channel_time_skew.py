@@ -65,7 +65,7 @@ class ChannelTimeSkew(Effect):
         if not various:
             return tuple(steady)
         if READING[TORQUE] in reach.has:
-            steady += [(TORQUE, step, AVERAGED) for step in self.STEPS if step >= 0]
+            steady += [(TORQUE, step, AVERAGED) for step in (0.0, max(self.STEPS))]
         growing = [(side, 0.0, since) for side in sides for since in (ON_AND_ON, EACH_RUN)]
         # a curve has many numbers, and what it does to the angles is the same whichever of them is late; where the
         # wind-up was not measured it takes on whatever the weight has wrong
