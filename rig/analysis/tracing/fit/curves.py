@@ -45,16 +45,16 @@ class Curves:
 
     def any(self) -> bool:
         """Whether a law in the model does."""
-        return any(term.effect.gives(np.zeros(1), term.shape).shape[1] for term in self.s.design.terms)
+        return any(_gives(term, 0.0).size for term in self.s.design.terms)
 
     def near_zero(self) -> Compliance:
         """Near zero torque, where a maker's K_1 is and the k_1 of a cubic spring."""
-        return self._at(np.zeros(1), np.ones(1))
+        return self._at(0.0)
 
     def under_load(self) -> Compliance:
         """At the largest torque there was."""
         pieces = [piece for run in self.s.design.eq.runs for piece in run.pieces if piece.t.size]
-        return self._at(np.array([max(float(np.abs(piece.torque).max()) for piece in pieces)]), np.ones(1))
+        return self._at(max(float(np.abs(piece.torque).max()) for piece in pieces))
 
     def swinging(self) -> Compliance:
         """Where the torque changes, which is where the damper beside the spring is seen: what laws in the spring change
@@ -69,18 +69,16 @@ class Curves:
                 by[place] += slopes
         return Compliance(value, by)
 
-    def _at(self, torque: Array, weight: Array) -> Compliance:
-        """The mean over `torque` (n,) by `weight` (n,)."""
+    def _at(self, torque: float) -> Compliance:
         value, by = self.fitted.value, self.fitted.by.copy()
         for i, term in enumerate(self.s.design.terms):
-            mean = _mean(term, torque, weight)
-            if mean.size:
-                place = self.s.design.place(i)
-                value += float(mean @ self.s.x[place])
-                by[place] += mean
+            place, gives = self.s.design.place(i), _gives(term, torque)
+            if gives.size:
+                value += float(gives @ self.s.x[place])
+                by[place] += gives
                 for at, (owner, j) in enumerate(self.slopes):
                     if owner == i:
-                        ends = [_mean(_stretched(term, j, sign * STEP), torque, weight) for sign in (1.0, -1.0)]
+                        ends = [_gives(_stretched(term, j, sign * STEP), torque) for sign in (1.0, -1.0)]
                         by[self.s.design.size + at] += (ends[0] - ends[1]) @ self.s.x[place] / (2 * STEP)
         return Compliance(value, by)
 
@@ -96,8 +94,8 @@ def _slopes(term: Term, pieces: Sequence[Signals]) -> Array:
     return np.asarray(along / max(size, 1e-300))
 
 
-def _mean(term: Term, torque: Array, weight: Array) -> Array:
-    return np.asarray(weight @ term.effect.gives(torque, term.shape) / weight.sum())
+def _gives(term: Term, torque: float) -> Array:
+    return np.asarray(term.effect.gives(np.array([torque]), term.shape)[0])
 
 
 def _stretched(term: Term, j: int, share: float) -> Term:
