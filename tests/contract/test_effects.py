@@ -118,6 +118,14 @@ def test_what_an_effect_softens_the_gear_by_has_the_gradient_it_says(effect: Eff
             assert gradient[j] == pytest.approx((up - down) / (2e-4 * scale[j]), rel=1e-4, abs=1e-12)
 
 
+@every_effect
+def test_what_counts_twice_in_the_damping_is_a_law_in_the_spring(effect: Effect):
+    for shape in effect.shapes(REACH):
+        share = effect.drags(shape)
+        assert 0.0 <= share <= 1.0
+        assert not share or (effect.in_the_spring and Port.WIND_UP in effect.columns(motion(n=50), shape))
+
+
 def named(effect: Effect) -> set[str]:
     """What the parameters of `effect` are called, whatever its shape, and what the detectors of each run's own say."""
     own = {"external_vibration": shaken(), "missed_counts": lost(), "channel_time_skew": late()}

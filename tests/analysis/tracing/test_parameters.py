@@ -165,7 +165,9 @@ def test_a_spring_that_gets_stiffer_is_told_near_zero_torque_and_under_load(
     y = torque / K + soft * column - B_SP * local**2 * rate
     y = y + 1e-8 * rng.standard_normal(y.size)
     at, key, size = np.array([INDEX["compliance"], INDEX["damping"], len(BASELINE)]), (0, "A"), len(BASELINE) + 1
-    piece = SimpleNamespace(torque=torque, torque_rate=rate, t=np.arange(torque.size), gear=SimpleNamespace(K=K))
+    piece = SimpleNamespace(
+        torque=torque, torque_rate=rate, t=np.arange(torque.size), dt=4e-3, gear=SimpleNamespace(K=K)
+    )
     gear = SimpleNamespace(J_l=0.8, K=K)
     run: Any = SimpleNamespace(**{**vars(RUN), "gear": gear, "ratio": 50.0, "pieces": (piece,)})
     rows: Any = {key: SimpleNamespace(keep=np.ones(torque.size, bool), own=np.zeros((torque.size, 0)))}
