@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
+from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.sizes import may_be_nothing
 from rig.model.effect import Parameter
 from rig.model.effects import LIBRARY
@@ -16,3 +20,13 @@ def test_a_size_that_holds_zero_may_be_nothing(loss: float | None, there: float,
     """Drag of 0.4 ± 3.3 N·m; of an effect that is told with nothing nothing is said."""
     words = () if loss is None else (Parameter("drag_at_10_rad_s", loss, (loss - there, loss + there), "N·m"),)
     assert may_be_nothing(LIBRARY["quadratic_drag"], words) is nothing
+
+
+@pytest.mark.parametrize(("half", "sized", "measured"), [(0.1, True, True), (0.5, True, False), (1.2, False, False)])
+def test_what_is_measured_to_a_third_is_more_than_what_is_not_nothing(half: float, sized: bool, measured: bool) -> None:
+    name = "angle_dependent_stiffness"
+    words = {name: (Parameter("kappa_order_2_amplitude", 0.05, (0.05 * (1 - half), 0.05 * (1 + half)), "1"),)}
+    asked: Any = SimpleNamespace(names=(name,), words=words)
+    asked.sized = Asked.sized.func(asked)
+    assert (name in asked.sized) is sized
+    assert (name in Asked.measured.func(asked)) is measured

@@ -13,7 +13,7 @@ from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.score import HeldOutScore
-from rig.analysis.tracing.selection.sizes import may_be_nothing
+from rig.analysis.tracing.selection.sizes import is_hardly_known, may_be_nothing
 from rig.analysis.tracing.thresholds import ALONE, MISSING
 from rig.model.effect import Array, Parameter
 from rig.model.effects import LIBRARY
@@ -45,6 +45,12 @@ class Asked:
         """Those of them of which a size at least is not nothing. Of several in the place of one law that has no name
         none may be left out, and none be anything."""
         return tuple(name for name in self.names if not may_be_nothing(LIBRARY[name], self.words.get(name, ())))
+
+    @cached_property
+    def measured(self) -> tuple[str, ...]:
+        """Those of these of which a size is known, which beside something unknown says more than that there is one."""
+        of = {name: LIBRARY[name].sizes(self.words.get(name, ())) for name in self.sized}
+        return tuple(name for name, sizes in of.items() if not sizes or not all(map(is_hardly_known, sizes)))
 
     @property
     def one(self) -> float:

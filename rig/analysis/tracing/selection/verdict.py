@@ -71,9 +71,10 @@ def _decided(asked: Asked) -> Conclusion:
         return said
     if not asked.loud:
         inside = None if names else hidden(p, s, asked.after, asked.floors)
-        elsewhere = inside or _drifting(p, s, names, asked.floors) or _uneven(p, s, names, asked.floors)
+        beside = asked.sized  # of what may as well be nothing no name stands beside something else
+        elsewhere = inside or _drifting(p, s, beside, asked.floors) or _uneven(p, s, beside, asked.floors)
         elsewhere = elsewhere or (None if names else _weakening(p, s))
-        return elsewhere or _jumped(p, names) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
+        return elsewhere or _jumped(p, beside) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
     if not names and asked.worst[1] < LITTLE and (drift := _drifting(p, s, names, asked.floors)):
         return drift  # of many floors, which no error shows: the little that is left is what of it falls within runs
     where = _where(p, s, asked.after, asked.floors, asked.one)
@@ -124,7 +125,7 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
     other = _of_the_same_order(asked.s, best) | (AT_THE_START if best.coordinate == "memory" and best.first else set())
-    shared = [name for name in asked.sized if name not in p.own.made and name not in other]
+    shared = [name for name in asked.measured if name not in p.own.made and name not in other]
     told = line is None and (asked.has_repeats or total <= EXPLAINED)
     taken = min(share(*most(p.held_out, before, after)), share_of_all(p.held_out, before, after))
     stand = standing(best.coordinate, shared, asked.scores, asked.plain, told) if taken > PART else ()
