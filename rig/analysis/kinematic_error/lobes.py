@@ -36,7 +36,7 @@ def may_read_twice(amplitude: Array) -> str:
 
 
 def _is_loudest(amplitude: Array, order: int) -> bool:
-    if amplitude.size < order:
+    if amplitude.size < max(order, LOBES):
         return False
     size = amplitude[order - 1]
     return bool(size >= amplitude.max() and size > MORE * amplitude[LOBES - 1])

@@ -48,13 +48,13 @@ def test_a_jump_where_the_motor_turns_back_is_none(rng: np.random.Generator) -> 
     assert jumps(e, np.abs(np.arange(4000) - 2500) > 43, 7.0, ANY) == []
 
 
-def onward_at(theta: np.ndarray) -> np.ndarray:
-    """Which rows of one run at these motor angles, 4 ms apart, may show a jump."""
+def onward_at(theta: np.ndarray, rippling: bool = False) -> np.ndarray:
+    """Which rows of one run at these motor angles, 4 ms apart, may show a jump, or one that is certain and stays."""
     row = SimpleNamespace(theta_m=theta, t=0.004 * np.arange(theta.size))
     eq: Any = SimpleNamespace(rows={(0, "A"): row})
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(steps, "clock", lambda eq, key: row.t)
-        return np.asarray(steps._onward(eq, (0, "A")))
+        return np.asarray(steps._onward(eq, (0, "A"), rippling))
 
 
 def test_a_jump_where_the_load_is_accelerated_is_none_and_ripple_hides_none() -> None:
@@ -64,6 +64,23 @@ def test_a_jump_where_the_load_is_accelerated_is_none_and_ripple_hides_none() ->
     assert faster[500:1900].all()
     assert faster[2100:3500].all()
     assert onward_at(30.0 * t + 0.05 * np.sin(60.0 * t))[100:3900].all()
+
+
+def test_a_motor_that_cogs_goes_on_where_a_jump_is_certain_and_stays(rng: np.random.Generator) -> None:
+    t = 0.004 * np.arange(4000)
+    cogging = 1.0 * t + 0.02 * np.sin(24.0 * t)
+    assert onward_at(cogging).mean() < 0.2
+    assert onward_at(cogging, rippling=True)[100:3900].mean() > 0.8
+    faster = onward_at(np.where(t < 8.0, t, 8.0 + 1.5 * (t - 8.0)), rippling=True)
+    assert not faster[1995:2005].any()
+    e = 4e-6 * rng.standard_normal(4000)
+    e[1500:] += 8.7e-5
+    going = np.ones(4000, bool)
+    (at,) = np.flatnonzero(steps._certain(e, going))
+    assert at == pytest.approx(1500, abs=4)
+    e[2500:] -= 8.7e-5  # it comes back
+    assert not steps._certain(e, going).any()
+    assert not steps._certain(e, ~going).any()
 
 
 def test_noise_drift_and_waves_have_no_jumps(rng: np.random.Generator) -> None:
@@ -126,7 +143,7 @@ def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(
     wander = 5e-6 * np.sin(np.arange(4000) / 250)
     e[1, "A"] += wander
     e[1, "A"][1500:] += 2 * count
-    monkeypatch.setattr(steps, "_onward", lambda eq, key: np.ones(4000, dtype=bool))
+    monkeypatch.setattr(steps, "_onward", lambda eq, key, rippling=False: np.ones(4000, dtype=bool))
     monkeypatch.setattr(steps, "_of_the_torque", lambda *of: False)
     monkeypatch.setattr(steps, "_lasts", lambda *of: True)
     monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))
@@ -144,7 +161,7 @@ def test_in_a_lock_test_jumps_are_what_they_are_where_the_torque_tells(
     """A torque sensor whose zero jumps seems to wind the gear up; run 1 is a lock test, with no balance of the load."""
     e = {(i, "A"): 4e-6 * rng.standard_normal(4000) + 3e-5 * (np.arange(4000) > 2500) for i in range(2)}
     e[0, "L"] = np.zeros(4000)
-    monkeypatch.setattr(steps, "_onward", lambda eq, key: np.ones(4000, dtype=bool))
+    monkeypatch.setattr(steps, "_onward", lambda eq, key, rippling=False: np.ones(4000, dtype=bool))
     monkeypatch.setattr(steps, "_of_the_torque", lambda eq, e, key, *of: shown and key[0] == 0)
     monkeypatch.setattr(steps, "_lasts", lambda *of: True)
     monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))
