@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from rig.core.units import TURN
+from rig.analysis.motion.degrees import DEGREES
 
-DEGREES: Final = 360 / TURN
 ALIKE: Final = 0.05  # relative, of what a mistake makes: ratios that were declared a little off are told all the same
 UNIT: Final = 1.5  # a ratio so near 1 is the same with both sides taken for each other
 
@@ -16,7 +15,7 @@ def mistaken(ratio: float, turns: float) -> str:
     no usual mistake makes that."""
     if not turns:
         return ""
-    if abs(turns / ratio + 1.0) < ALIKE:
+    if turns < 0:
         return "one of the angles has the other sign"
     if abs(turns * ratio - 1.0) < ALIKE and not 1 / UNIT < ratio < UNIT:
         return "θ_m and θ_l seem to be taken for each other: expected the motor's angle in theta_m"

@@ -54,7 +54,7 @@ def onward_at(theta: np.ndarray, rippling: bool = False) -> np.ndarray:
     eq: Any = SimpleNamespace(rows={(0, "A"): row})
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(steps, "clock", lambda eq, key: row.t)
-        return np.asarray(steps._onward(eq, (0, "A"), rippling))
+        return np.asarray((steps._onward_rippling if rippling else steps._onward)(eq, (0, "A")))
 
 
 def test_a_jump_where_the_load_is_accelerated_is_none_and_ripple_hides_none() -> None:
@@ -143,7 +143,8 @@ def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(
     wander = 5e-6 * np.sin(np.arange(4000) / 250)
     e[1, "A"] += wander
     e[1, "A"][1500:] += 2 * count
-    monkeypatch.setattr(steps, "_onward", lambda eq, key, rippling=False: np.ones(4000, dtype=bool))
+    for name in ("_onward", "_onward_rippling"):
+        monkeypatch.setattr(steps, name, lambda eq, key: np.ones(4000, dtype=bool))
     monkeypatch.setattr(steps, "_of_the_torque", lambda *of: False)
     monkeypatch.setattr(steps, "_lasts", lambda *of: True)
     monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))
@@ -161,7 +162,8 @@ def test_in_a_lock_test_jumps_are_what_they_are_where_the_torque_tells(
     """A torque sensor whose zero jumps seems to wind the gear up; run 1 is a lock test, with no balance of the load."""
     e = {(i, "A"): 4e-6 * rng.standard_normal(4000) + 3e-5 * (np.arange(4000) > 2500) for i in range(2)}
     e[0, "L"] = np.zeros(4000)
-    monkeypatch.setattr(steps, "_onward", lambda eq, key, rippling=False: np.ones(4000, dtype=bool))
+    for name in ("_onward", "_onward_rippling"):
+        monkeypatch.setattr(steps, name, lambda eq, key: np.ones(4000, dtype=bool))
     monkeypatch.setattr(steps, "_of_the_torque", lambda eq, e, key, *of: shown and key[0] == 0)
     monkeypatch.setattr(steps, "_lasts", lambda *of: True)
     monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))

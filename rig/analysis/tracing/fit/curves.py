@@ -43,8 +43,8 @@ class Curves:
     fitted: Compliance
     slopes: Sequence[tuple[int, int]]
 
-    def any(self) -> bool:
-        """Whether a law in the model does."""
+    def are_there(self) -> bool:
+        """Whether a law in the model bends it."""
         return any(_gives(term, 0.0).size for term in self.s.design.terms)
 
     def near_zero(self) -> Compliance:

@@ -78,7 +78,7 @@ def _of_the_spring(s: Solution, c: Array, slopes: Sequence[tuple[int, int]]) -> 
     stiff = swings.stiffness
     if not np.isfinite([near.stiffness, stiff]).all():
         return []
-    out = [near.told("K", c), *([curves.under_load().told("K_under_load", c)] if curves.any() else [])]
+    out = [near.told("K", c), *([curves.under_load().told("K_under_load", c)] if curves.are_there() else [])]
     damping, lag = damping_of(s.value("damping"), stiff, s.value("lag")), s.value("lag")
     both = _unit(c, "damping") * -(stiff**2) + _unit(c, "lag") * stiff
     both += swings.by * (2 * s.value("damping") * stiff - lag) * stiff**2

@@ -20,6 +20,7 @@ from rig.model.effects import EACH_RUN
 from rig.model.effects.missed_counts import LOAD, MOTOR
 
 LOST = EACH_RUN["missed_counts"]
+REACH = WINDOW + EDGE  # rows on either side of a jump that are compared
 APART = 5.0  # usual steps between two rows: something was left out there
 SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a turn and more was seen
 ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
@@ -64,7 +65,7 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     keys = [k for k in e if k[1] == "A"]
     onward = {key: _onward(eq, key) for key in keys}
     for key in keys:  # a motor whose speed ripples: what is certain, and stays to the end of the run
-        onward[key] = onward[key] | _certain(e[key], _onward(eq, key, rippling=True))
+        onward[key] = onward[key] | _certain(e[key], _onward_rippling(eq, key))
     sure = [abs(size) for key in keys for _, size in _sure(e[key], onward[key])]
     # once it is known how many counts are lost at a time, smaller evidence of the same loss will do
     usual = float(np.median(sure)) if sure else 0.0
@@ -187,20 +188,29 @@ def _columns(eq: Equations, run: int, row: int, side: float) -> dict[str, Array]
     return dict(eq.term(run, Term(LOST, (side, 0.5 * (t[row] + t[max(row - 1, 0)])))))
 
 
-def _onward(eq: Equations, key: Key, rippling: bool = False) -> Mask:
+def _onward(eq: Equations, key: Key) -> Mask:
     """True for rows with a window on both sides in which the motor neither turned back nor rested, and goes on at one
-    speed, (n,); `rippling`, its mean before and after alone.
+    speed, (n,).
 
     At a reversal everything with memory or play goes over to its other branch, and some of it where the load is
     accelerated: that looks like a step and is none.
     """
     theta, t = eq.rows[key].theta_m, clock(eq, key)
+    return _unturned(theta, t) & _at_one_speed(theta, t, REACH)
+
+
+def _onward_rippling(eq: Equations, key: Key) -> Mask:
+    """The same where its speed may ripple, and is the same in the mean before and after."""
+    theta, t = eq.rows[key].theta_m, clock(eq, key)
+    return _unturned(theta, t) & _as_fast(theta, t, 2 * REACH)
+
+
+def _unturned(theta: Array, t: Array) -> Mask:
+    """Rows (n,) as far as REACH from which the motor neither turned back nor rested."""
     way = np.sign(np.diff(theta, prepend=theta[0]))
     turned = np.concatenate([[0], np.cumsum(np.abs(np.diff(_filled(way))) > 0) + np.cumsum(_rested(theta, t))])
-    reach = WINDOW + EDGE
-    first, last = np.maximum(np.arange(t.size) - reach, 0), np.minimum(np.arange(t.size) + reach, t.size - 1)
-    steady = _as_fast(theta, t, 2 * reach) if rippling else _at_one_speed(theta, t, reach)
-    return np.asarray((turned[first] == turned[last]) & steady)
+    first, last = np.maximum(np.arange(t.size) - REACH, 0), np.minimum(np.arange(t.size) + REACH, t.size - 1)
+    return np.asarray(turned[first] == turned[last])
 
 
 def _for_good(e: Array, size: float) -> Mask:

@@ -95,8 +95,6 @@ def _reason(ratio: float, slope: float) -> str:
         return "θ_l does not move"
     if why := mistaken(ratio, ratio / slope):
         return why
-    if slope < 0:
-        return "one of the angles has the other sign"
     return f"θ_m/θ_l is {ratio / slope:.4g}, the declared gear.ratio {ratio:g}, or an angle is in another unit than rad"
 
 
