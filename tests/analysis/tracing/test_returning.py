@@ -41,7 +41,7 @@ def solved(seed: int, scatter: float, runs: int = 8, waves: float = 10.0) -> Sol
             at = np.array([INDEX[name], INDEX[DRAG[name][0]]])
             parts[run, channel] = (Part(Bare(np.stack([alpha, omega], 1)), at, None),)
             rows[run, channel] = SimpleNamespace(theta_m=theta)
-    one = SimpleNamespace(locked=False, look=Look(), pieces=())
+    one = SimpleNamespace(locked=False, look=Look(), pieces=(), has=frozenset())
     made: Any = (one,) * runs
     eq = Equations(made, rows, Noise({"M": 1e-3, "L": 0.1}, {"M": 1.0, "L": 1.0}, {"M": 1.0, "L": 1.0}))
     size = len(BASELINE)

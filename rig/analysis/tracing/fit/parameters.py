@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, third_rate
 from rig.analysis.tracing.fit.covariance import covariance
 from rig.analysis.tracing.fit.curves import Compliance, Curves
 from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.late_reading import beside_a_late_reading
 from rig.analysis.tracing.fit.learnt import damping_of
 from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, solve
 from rig.analysis.tracing.fit.refine import nudged
@@ -40,12 +41,14 @@ LEAST = 0.5  # of what is fitted: below it the series has no sum that its terms 
 
 
 def inertias_by_what_returns(s: Solution, runs: Sequence[int]) -> tuple[Parameter, ...]:
-    """`baseline`, with inertias that know nothing of what scatters within a run, and all others beside them. How far
+    """`baseline`, with inertias that know nothing of what scatters within a run nor of a motor's torque that is read
+    late, and all others beside them. How far
     shapes of effects are known is in all intervals: a spring that gets stiffer beyond all torques of the fitted `runs`
     leaves its K open."""
+    s, unsure = beside_a_late_reading(s)
     moved, (fitted, _) = by_what_returns(s), _loose(s)
     spread = _widened(s, fitted, runs, covariance) if fitted else covariance(s).copy()
-    spread[: s.x.size, : s.x.size] += moved.more
+    spread[: s.x.size, : s.x.size] += moved.more + unsure
     return baseline(replace(s, x=moved.x), spread, fitted)
 
 

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from rig.analysis.tracing.fit.covariance import is_sure
-from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.fit.late_reading import is_late
+from rig.analysis.tracing.fit.model import design, fit
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import Campaign, looking
@@ -20,9 +20,6 @@ from rig.analysis.tracing.searched import searched
 from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 
-LEAST: Final = 2e-5  # s; less is the jitter of a loop
-MOST: Final = 1e-3  # s, a cycle of a drive; what is later is left to be found
-SURE: Final = 4.0  # times half its 95 % interval
 NEEDED: Final = {"tau_m", "tau_l", "theta_m", "t"}
 
 
@@ -36,11 +33,11 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     name has it still, and nothing is left, or of the motor's torque clearly less."""
     looks = [replace(run.look, late_motor=True) for run in so_far.p.campaign.runs]
     p = prepare(looking(so_far.p.campaign, looks), hold_out)
-    if not any(_is_late(fit(design(p.eq, terms, p.split.fitted))) for terms in ((), so_far.solution.design.terms)):
+    if not any(is_late(fit(design(p.eq, terms, p.split.fitted))) for terms in ((), so_far.solution.design.terms)):
         return so_far, found
     other, ranked = searched(p)
     less = not other.loud or _left(other) < PLAIN_ENOUGH * _left(so_far)
-    counts = _is_late(other.solution) and so_far.names <= other.names and less
+    counts = is_late(other.solution) and so_far.names <= other.names and less
     return (other, ranked) if counts else (so_far, found)
 
 
@@ -49,7 +46,3 @@ def _left(selected: Selected) -> float:
     held_out = selected.p.held_out
     e = held_out.residuals(selected.solution, selected.held)
     return held_out.ratio(e, [key for key in e if key[1] == "M"])
-
-
-def _is_late(s: Solution) -> bool:
-    return is_sure(s, "lag_m", LEAST, SURE) and abs(s.value("lag_m")) < MOST
