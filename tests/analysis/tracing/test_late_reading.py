@@ -102,6 +102,7 @@ def test_where_noise_hides_the_delay_the_inertia_is_as_unsure_as_it_would_move()
     (told,) = (p for p in inertias_by_what_returns(s, ()) if p.name == "J_m")
     (plain,) = (p for p in baseline(s) if p.name == "J_m")
     assert not plain.ci95[0] < J_M < plain.ci95[1]
-    assert told.ci95[0] < J_M * 1.002 and J_M < told.ci95[1]  # a tenth of a cycle is lost between rows of 4 ms
+    assert told.ci95[0] < 1.002 * J_M  # noise of the torque's slope makes its delay seem smaller
+    assert told.ci95[1] > J_M
     assert told.value == pytest.approx(plain.value, rel=1e-3)
     assert more[INDEX[NAME]].max() == 0
