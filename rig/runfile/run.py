@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 import pyarrow as pa
 
-from rig.core.errors import UsageError
+from rig.core.errors import DataError, UsageError
 from rig.core.few import few
 from rig.core.rows import stretches
 from rig.runfile import manifest as manifests
@@ -42,8 +42,8 @@ class Run:
     def open(cls, path: Path | str) -> Run:
         """Open the folder at `path`: samples.parquet, else the journal.
 
-        Raises UsageError when schema, procedure, gear.ratio or samples are absent, or contradict the format: no angle
-        at all, time that runs backwards, a unit other than the table's. Raises DataError when the samples are damaged.
+        Raises UsageError when schema, procedure or gear.ratio are absent, or contradict the format: no angle at all, a
+        unit other than the table's. Raises DataError when the samples are damaged or absent, or their time runs back.
         """
         folder = Path(path)
         refuse_no_text(folder)
@@ -170,7 +170,7 @@ def _refuse_backward_time(run: Run) -> None:
         if back.size:
             i = int(back[0])
             before = there[i - 1] if i else last
-            raise UsageError(
+            raise DataError(
                 f"{run.samples.path}: time runs backwards after row {row + i - 1} ({before:.6f} s, then "
                 f"{there[i]:.6f} s); expected rows in the order they were measured"
             )

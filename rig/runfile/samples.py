@@ -113,13 +113,14 @@ class Journal(Samples):
 
 
 def open_samples(folder: Path) -> Samples:
-    """The archive where there is one, else the journal. Raises UsageError when there is neither, or in other units."""
+    """The archive where there is one, else the journal. Raises DataError when there is neither, UsageError for other
+    units."""
     if (folder / NAME).exists():
         found: Samples = Archive(folder / NAME)
     elif journal_files(folder):
         found = Journal(folder)
     else:
-        raise UsageError(f"{folder} has no samples: neither {NAME} nor a journal")
+        raise DataError(f"{folder} has no samples: neither {NAME} nor a journal")
     names = found.layout.names
     for name in names:
         if names.count(name) > 1:

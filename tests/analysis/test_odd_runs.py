@@ -110,3 +110,9 @@ def test_a_torque_that_is_zero_in_every_row_was_not_measured(procedure: str, abs
     said = told(columns, {}, procedure).cannot
     assert any("tau_l is exactly 0 in all 4000 rows" in note for note in said)
     assert any("tau_m is exactly 0 in all" in note for note in said) == absent, "a motor runs down without a torque"
+
+
+def test_a_torque_without_a_number_in_any_row_is_said_to_be_absent() -> None:
+    columns = dict(at_speed(seconds=4.0, tau_l=np.full(4000, np.nan)).columns)
+    said = told(columns, {}, "constant_speed").cannot
+    assert sum("tau_l has no value in any of its 4000 rows" in note for note in said) == 1

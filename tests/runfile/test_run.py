@@ -173,7 +173,7 @@ def test_raw_counts_are_an_angle(tmp_path: Path) -> None:
 def test_time_that_runs_backwards_is_refused_with_where(tmp_path: Path) -> None:
     t = T.copy()
     t[41] = 0.039
-    with pytest.raises(UsageError, match=r"time runs backwards after row 40 \(0\.040000 s, then 0\.039000 s\)"):
+    with pytest.raises(DataError, match=r"time runs backwards after row 40 \(0\.040000 s, then 0\.039000 s\)"):
         Run.open(foreign(tmp_path / "x", t=t, theta_m=T))
 
 
@@ -183,7 +183,7 @@ def test_time_that_runs_backwards_where_two_stretches_of_rows_meet_is_refused(
     monkeypatch.setattr("rig.core.rows.STRETCH", 41)
     t = T.copy()
     t[3], t[41] = np.nan, 0.039
-    with pytest.raises(UsageError, match=r"backwards after row 39 \(0\.040000 s, then 0\.039000 s\)"):
+    with pytest.raises(DataError, match=r"backwards after row 39 \(0\.040000 s, then 0\.039000 s\)"):
         Run.open(foreign(tmp_path / "x", t=t, theta_m=T))
 
 
@@ -238,7 +238,7 @@ def test_a_manifest_that_lacks_what_is_required_is_refused(
 def test_a_folder_without_samples_is_refused(tmp_path: Path) -> None:
     folder = foreign(tmp_path / "x")
     (folder / "samples.parquet").unlink()
-    with pytest.raises(UsageError, match=r"has no samples: neither samples\.parquet nor a journal"):
+    with pytest.raises(DataError, match=r"has no samples: neither samples\.parquet nor a journal"):
         Run.open(folder)
     shutil.rmtree(folder)
     with pytest.raises(UsageError, match="is not a run folder"):

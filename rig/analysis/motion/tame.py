@@ -70,7 +70,7 @@ class Tame:
             return None
         if values is None:
             return None
-        most = FARTHEST if name.startswith("theta") else LARGEST
+        as_read, most = values, FARTHEST if name.startswith("theta") else LARGEST
         absurd = [some.start + np.flatnonzero(np.abs(values[some]) > most) for some in stretches(values.size)]
         rows = np.concatenate(absurd) if absurd else np.empty(0, np.int64)  # infinite too; NaN compares false
         if rows.size:
@@ -86,8 +86,11 @@ class Tame:
                 f"{name} is exactly 0 in all {values.size} rows: nobody measured it, so it counts as absent."
             )
             return None
-        any_left = any(np.isfinite(values[some]).any() for some in stretches(values.size))
-        return values if any_left or not values.size else None
+        if _any(values) or not values.size:
+            return values
+        if not rows.size and not _any(as_read):
+            self.notes.append(f"{name} has no value in any of its {values.size} rows: it counts as absent.")
+        return None
 
     def _reads_nothing(self, name: str, values: Array) -> bool:
         """Whether a torque is zero in every row, as of a sensor that is not there: one that is has noise, and a motor
@@ -157,6 +160,11 @@ class Tame:
         if not good:
             self.notes.append(f"The limit of {name} is not a number, or its bounds are the wrong way round.")
         return good
+
+
+def _any(values: Array) -> bool:
+    """Whether there is a number among them."""
+    return any(np.isfinite(values[some]).any() for some in stretches(values.size))
 
 
 def _absurd(name: str, values: Array, rows: np.ndarray[Any, np.dtype[np.int64]], most: float) -> str:
