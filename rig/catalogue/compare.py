@@ -191,6 +191,8 @@ def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> lis
         said += [f"{one.path.name}: {why}" for why in (one.problem, one.doubt and DOUBTED.format(one.doubt)) if why]
         if why := without_figures(one, names):
             said.append(why)
+    if not any(row.gear for row in found):
+        said.append("no run names its gear (gear.serial): whether they are of one gear nobody can tell")
     return [*said, *lacks(found, known)]
 
 

@@ -38,8 +38,8 @@ class Identification:
 
     @property
     def exit(self) -> Exit:
-        """INCOMPLETE where a parameter is left open."""
-        return Exit.INCOMPLETE if self.found.undetermined else Exit.PASS
+        """INCOMPLETE where a parameter is left open, or two sensors contradict each other."""
+        return Exit.INCOMPLETE if self.found.undetermined or self.found.doubtful else Exit.PASS
 
     def lines(self) -> list[str]:
         """All of it for people."""

@@ -91,7 +91,10 @@ class OpenLoop:
         return setting.drivetrain.speed_after(abs(self.torque), self.settle + self.longest, abs(self.omega))
 
     def envelope(self, setting: Setting) -> Envelope:
-        """With the margin in speed on all that is not held by the loop."""
+        """With the margin in speed on all that is not held by the loop. Raises NotReady for a torque with which the
+        motor comes to a stand by the friction declared.
+        """
+        self._refuse_too_little(setting)
         omega, settled = abs(self.omega), self.settled(setting)
         fast = MARGIN * max(omega, settled)
         travel = hold_travel(omega, self.average) + fast * self.settle + (self.revolutions + 1) * TURN
@@ -103,6 +106,15 @@ class OpenLoop:
             max(setting.control.torque_limit, abs(self.torque)),
             reserve=self.reserve(setting),
         )
+
+    def _refuse_too_little(self, setting: Setting) -> None:
+        tau_c = setting.drivetrain.tau_c
+        if self.torque and abs(self.torque) <= tau_c and not self.settled(setting):
+            raise NotReady(
+                f"torque = {self.torque:g} N·m lets the motor come to a stand: the declared friction alone, gear.tau_c, "
+                f"takes {tau_c:g} N·m; expected more than that, or torque = 0 to have it found at {self.speed_rpm:g} rpm "
+                "(hdrig run friction measures gear.tau_c)"
+            )
 
     def reserve(self, setting: Setting) -> str:
         """What of its speed was not asked for, in words."""

@@ -310,3 +310,12 @@ def test_a_figure_that_does_not_count_is_told_by_its_key_and_in_old_files_by_its
 )
 def test_one_degree_of_freedom_is_one_in_words(dof: float, said: str) -> None:
     assert said in Scatter(0.2, dof, repeats=2, sets=1).words("arcsec")
+
+
+def test_runs_that_name_no_gear_are_compared_with_a_word(tmp_path: Path) -> None:
+    a, b = (run(tmp_path, day, gear={}) for day in DAYS[:2])
+    assert (
+        "no run names its gear (gear.serial): whether they are of one gear nobody can tell" in compare([a, b]).remarks
+    )
+    named = run(tmp_path, DAYS[2])
+    assert not any("gear.serial" in said for said in compare([a, named]).remarks)

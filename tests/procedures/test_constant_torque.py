@@ -56,10 +56,18 @@ def test_a_torque_that_is_given_is_the_torque_that_is_commanded() -> None:
 
 def test_a_torque_too_small_to_keep_the_motor_turning_is_told_and_leaves_no_torque() -> None:
     rig = Rig()
-    with pytest.raises(NotReady, match=r"did not keep turning at a constant 0\.2500 N·m"):
-        rig.run(ConstantTorque(speed_rpm=310.0, torque=0.25, revolutions=12, settle=1.0))
+    with pytest.raises(NotReady, match=r"did not keep turning at a constant 0\.3300 N·m"):
+        rig.run(ConstantTorque(speed_rpm=310.0, torque=0.33, revolutions=12, settle=1.0))
     rig.world.wait_until(rig.world.now() + 1.0)
     assert rig.world.truth().omega_m == 0.0
+
+
+def test_a_torque_below_the_declared_friction_is_refused_before_anything_turns() -> None:
+    rig = Rig()
+    before = rig.world.truth().theta_m
+    with pytest.raises(NotReady, match=r"torque = -0\.1 N·m lets .* takes 0\.32 N·m; expected more than that"):
+        rig.run(ConstantTorque(speed_rpm=-310.0, torque=-0.1, revolutions=12, settle=1.0))
+    assert rig.world.truth().theta_m == before
 
 
 @pytest.mark.parametrize("kind", [ConstantTorque, Sentinel])

@@ -76,6 +76,7 @@ class Identified:
     fits: Fits
     undetermined: tuple[str, ...] = ()  # names of what a complete identification has and no run here measured
     output: str = USUAL  # the part that was the output, by which the sums of drag were read
+    doubtful: bool = False  # two sensors contradict each other: one of them, and what goes by it, is wrong
 
     def gear_file(self, serial: str, simulated: bool, made: str) -> GearFile:
         """What goes on disk. Raises DataError when inertias or stiffness are neither measured nor declared."""
@@ -105,7 +106,8 @@ def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
     _motor(found, cannot, fits, said, sigma)
     refuse_impossible(found)
     cannot += [*strange(found, said), *taken_out(found)]
-    cannot += [why] if (why := disagreement(fits.means, fits.ratio)) else []
+    apart = disagreement(fits.means, fits.ratio)
+    cannot += [apart] if apart else []
     cannot += stand_in(found, fits, said, sigma)
     if "tau_s" not in found:
         unknown = found["tau_c"].note == NOTHING
@@ -114,7 +116,8 @@ def identified(fits: Fits, manifest: Mapping[str, Any]) -> Identified:
         found["omega_s"] = Parameter(STRIBECK, origin="assumed", note="without effect as long as tau_s equals tau_c")
     add_mode(found, fits)
     series = _series(fits, cannot)
-    return Identified(found, series, (*cannot, *_always(found)), fits, undetermined(found, series), output)
+    told = (*cannot, *_always(found))
+    return Identified(found, series, told, fits, undetermined(found, series), output, bool(apart))
 
 
 def _no_fall(fits: Fits) -> str:

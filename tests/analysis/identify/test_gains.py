@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 from rig.analysis.identify.gains import disagreement
 from rig.analysis.identify.means import Mean, Torque
+from rig.core.errors import Exit
+from rig.evaluation.identification import Identification
 
 N = 50.0
 
@@ -47,3 +52,11 @@ def test_what_reads_as_it_should_or_does_not_tell_is_left_alone(
 
 def test_a_load_at_one_speed_alone_tells_nothing_of_a_gain() -> None:
     assert disagreement(means(1.3558, {1.0: (5.0,), 12.0: (0.0,)}), N) == ""
+
+
+@pytest.mark.parametrize(("open_", "doubtful"), [((), False), (("K",), False), ((), True)])
+def test_it_makes_an_identification_inconclusive(open_: tuple[str, ...], doubtful: bool) -> None:
+    found: Any = SimpleNamespace(undetermined=open_, doubtful=doubtful)
+    none: Any = None
+    done = Identification(found, none, (), (), 1, 1, simulated=True)
+    assert done.exit is (Exit.INCOMPLETE if open_ or doubtful else Exit.PASS)
