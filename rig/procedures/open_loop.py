@@ -111,8 +111,9 @@ class OpenLoop:
         tau_c = setting.drivetrain.tau_c
         if self.torque and abs(self.torque) <= tau_c and not self.settled(setting):
             raise NotReady(
-                f"torque = {self.torque:g} N·m lets the motor come to a stand: the declared friction alone, gear.tau_c, "
-                f"takes {tau_c:g} N·m; expected more than that, or torque = 0 to have it found at {self.speed_rpm:g} rpm "
+                f"torque = {self.torque:g} N·m lets the motor come to a stand: the declared friction alone, "
+                f"gear.tau_c, takes {tau_c:g} N·m; expected more than that, or torque = 0 to have it found at "
+                f"{self.speed_rpm:g} rpm "
                 "(hdrig run friction measures gear.tau_c)"
             )
 
