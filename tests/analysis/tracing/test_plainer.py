@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import design, fit
+from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.selection.plainer import plainer
@@ -72,3 +72,30 @@ def test_a_stiffness_that_follows_a_logged_temperature_drifts_with_no_time(
     verdict = trace(tmp_path).verdict
     assert verdict.effects == ()
     assert (verdict.coordinate == "temperature") is logged
+
+
+EVEN = [f"speed_{speed}rpm_{n}" for speed in ("60", "120", "200", "300", "400", "minus200") for n in (1, 2)]
+
+
+def squared(c: Columns, began: float) -> Columns:
+    omega = np.gradient(c["theta_m"], c["t"])
+    return {"tau_m": c["tau_m"] + 2e-4 * omega * abs(omega) / 10}
+
+
+def falling(c: Columns, began: float) -> Columns:
+    omega = np.gradient(c["theta_m"], c["t"])
+    return {"tau_m": c["tau_m"] + 0.03 * np.sign(omega) * np.exp(-((omega / 8) ** 2))}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("law", "expected"), [(squared, "quadratic_drag"), (falling, "stribeck_friction")])
+def test_a_square_of_the_speed_is_no_friction_that_falls(law: Law, expected: str, tmp_path: Path, shared: Path) -> None:
+    p = prepare(read_campaign(change(tmp_path, shared / "cases" / "open-1", law, EVEN)), ())
+    runs = p.split.fitted
+    wide = [(speed, 2.0, 0.0, law) for speed in (8.0, 14.0) for law in (0.0, 1.0)]
+    found = max((fit(design(p.eq, (Term(LIBRARY["stribeck_friction"], one),), runs)) for one in wide), key=_gain)
+    assert [term.name for term in plainer(found, runs).design.terms] == [expected]
+
+
+def _gain(s: Solution) -> float:
+    return s.gain

@@ -16,6 +16,7 @@ from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.falls import share, share_of_all
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.standing import standing
+from rig.analysis.tracing.selection.verdict import _along_the_same_turn as along_the_same_turn
 from rig.analysis.tracing.selection.verdict import _in_the_floor_too as in_the_floor_too
 from rig.analysis.tracing.selection.verdict import _of_the_same_order as of_the_same_order
 from rig.analysis.tracing.selection.verdict import is_next_to_nothing
@@ -74,6 +75,13 @@ def test_a_ripple_of_the_order_that_is_left_in_the_angle_is_no_ripple(left: floa
     s: Any = SimpleNamespace(design=SimpleNamespace(terms=terms))
     assert of_the_same_order(s, Home("motor_angle", "A", 0.9, order=left)) == same
     assert of_the_same_order(s, Home("load_angle", "A", 0.9, order=left)) == set()
+
+
+def test_a_step_along_the_outputs_turn_is_no_runout_though_a_few_orders_draw_it() -> None:
+    assert along_the_same_turn(Home("load_angle", "A", 0.9)) == {"output_once_per_rev"}
+    assert along_the_same_turn(Home("load_angle", "L", 0.9)) == {"torque_sensor_crosstalk"}
+    for other in (Home("load_angle", "M", 0.9), Home("load_angle", "A", 0.9, order=7.0), Home("motor_angle", "A", 0.9)):
+        assert along_the_same_turn(other) == set()
 
 
 def test_what_explains_one_channel_beside_far_more_in_others_takes_little_of_all() -> None:

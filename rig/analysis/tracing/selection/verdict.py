@@ -41,6 +41,7 @@ from rig.model.effect import Array
 DRIFTS: Final = 3.0  # floors: zeros that drift by less matter to nobody, and wander so now and then
 SAME_ORDER: Final = 0.05  # of a turn
 HALF: Final = 0.5  # of the excess: a coordinate that foretells less of it may be another one's shadow
+ALONG_THE_OUTPUT: Final = {"A": "output_once_per_rev", "L": "torque_sensor_crosstalk"}  # a few orders of its turn
 AT_THE_START: Final = {"stribeck_friction"}  # more where a motor is slow, and so is what wears off after a start
 LITTLE: Final = 1.4  # floors, of which a coordinate must foretell a part to be more than friction that scatters
 FORETOLD_BY_CHANCE: Final = 0.3  # of the excess
@@ -124,7 +125,8 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
         return _settled(p, (), asked.found, *asked.worst)
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
-    other = _of_the_same_order(asked.s, best) | (AT_THE_START if best.coordinate == "memory" and best.first else set())
+    other = _of_the_same_order(asked.s, best) | _along_the_same_turn(best)
+    other |= AT_THE_START if best.coordinate == "memory" and best.first else set()
     shared = [name for name in asked.measured if name not in p.own.made and name not in other]
     told = line is None and (asked.has_repeats or total <= EXPLAINED)
     taken = min(share(*most(p.held_out, before, after)), share_of_all(p.held_out, before, after))
@@ -236,6 +238,13 @@ def _of_the_same_order(s: Solution, rest: Home) -> set[str]:
         return set()
     orders = [(t.name, t.shape[0]) for t in s.design.terms if t.effect.shape_names[:1] == ("order",)]
     return {name for name, order in orders if abs(order - rest.order) < SAME_ORDER}
+
+
+def _along_the_same_turn(rest: Home) -> set[str]:
+    """Effects that are a few orders of the output's turn, where a rest follows that turn and is no order of it: a step
+    at one angle, or a sector, is drawn by them as well as so few can, and what is left is the same thing's."""
+    follows = rest.coordinate == "load_angle" and rest.order is None and rest.channel in ALONG_THE_OUTPUT
+    return {ALONG_THE_OUTPUT[rest.channel]} if follows else set()
 
 
 def _lives(where: Sequence[Home]) -> tuple[str, ...]:
