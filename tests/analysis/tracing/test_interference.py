@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor import interference
-from rig.analysis.tracing.floor.interference import find_interference
+from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.model.effect import Array
 
 DT, N = 0.004, 10_000
@@ -23,6 +23,7 @@ class Run:
     """Just what the search looks at."""
 
     locked = False
+    has = frozenset({"t", "tau_l"})
     gear = SimpleNamespace(K=7160.0, J_l=0.8)  # 15.1 Hz
 
     def __init__(self, turning: float) -> None:
@@ -108,3 +109,10 @@ def test_what_is_usual_around_a_frequency_is_the_median(k: int) -> None:
 
 def test_a_faint_line_makes_no_floor_too_high_and_is_left() -> None:
     assert look(residuals(lambda w: 0.02 * np.sin(2 * np.pi * 3.7 * T))) is None
+
+
+@pytest.mark.parametrize("read", [True, False])
+def test_without_a_torque_sensor_a_line_may_as_well_be_a_torque_on_the_load(read: bool) -> None:
+    said = Interference("A", 6.39, 1.0, 0.6, {}, torque_read=read).sentence()
+    assert ("no torque on the load makes it" in said) == read
+    assert ("nobody can tell whether a torque on the load makes it" in said) != read

@@ -37,22 +37,26 @@ SHORTEST = 4 / LOWEST / 2  # s: two periods of the slowest line
 
 @dataclass(frozen=True)
 class Interference:
-    """Usual frequency, how far runs lie apart (highest over lowest), RMS over all of the residual, and the line itself
-    in every block it was read in, (n, 1)."""
+    """Usual frequency, how far runs lie apart (highest over lowest), RMS over all of the residual, the line itself in
+    every block it was read in, (n, 1), and whether the shaft's torque was read, which tells what shakes the load."""
 
     channel: str
     frequency_hz: float
     apart: float
     share: float
     columns: dict[Key, Array]
+    torque_read: bool = True
 
     def sentence(self) -> str:
         """What it is and is not."""
         wanders = f", from run to run {100 * (self.apart - 1):.0f} % apart" if self.apart > STEADY else ""
+        whose = "no torque on the load makes it: a pick-up in a sensor is likely"
+        if not self.torque_read:
+            whose = "without a torque sensor nobody can tell whether a torque on the load makes it or a pick-up"
         return (
             f"A line at {self.frequency_hz:.2f} Hz{wanders} stands in the data whatever the speed, "
-            f"{min(self.share, 1.0):.0%} of what the model leaves there, and no torque on the load makes it: a pick-up "
-            "in a sensor is likely. It makes repeats differ, so the floors were measured without it."
+            f"{min(self.share, 1.0):.0%} of what the model leaves there, and {whose}. "
+            "It makes repeats differ, so the floors were measured without it."
         )
 
 
@@ -80,7 +84,8 @@ def find_interference(eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key
     if not found:
         return None
     loudest = max(found, key=lambda line: line.share)
-    return replace(loudest, columns={k: x for line in found for k, x in line.columns.items()})
+    read = any("tau_l" in run.has for run in eq.runs)
+    return replace(loudest, columns={k: x for line in found for k, x in line.columns.items()}, torque_read=read)
 
 
 def _in_channel(
