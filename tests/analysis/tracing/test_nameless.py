@@ -201,6 +201,20 @@ def test_a_torque_sensor_whose_scale_is_off_is_told_with_how_much(shared: Path, 
 
 
 @pytest.mark.slow
+def test_a_weight_that_shifts_the_load_angle_is_neither_a_spring_nor_a_creep(shared: Path, tmp_path: Path) -> None:
+    def aside(c: Columns, began: float) -> Columns:
+        locked, weight = np.ptp(c["theta_l"]) < 1e-3, round(float(c["tau_l"].mean()))  # a held one has none hung on it
+        return {"theta_l": c["theta_l"] + (0.0 if locked else -1.2e-6 * weight)}
+
+    found = spiked(tmp_path, shared / "cases" / "open-1", aside)
+    told = CONFOUNDERS["pulled_aside"]
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
+    (much,) = [match for law in found.law if (match := re.search(r"the angle by (\S+) ± (\S+) arcsec", law))]
+    assert float(much[1].replace("−", "-")) == pytest.approx(1.2e-6 / ARCSEC, abs=max(0.01, 1.5 * float(much[2])))
+
+
+@pytest.mark.slow
 def test_a_torque_sensor_that_is_thrown_outward_goes_with_the_speed_and_drags_no_motor(
     shared: Path, tmp_path: Path
 ) -> None:

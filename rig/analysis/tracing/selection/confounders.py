@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.model import Solution, design, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag, WoundCable
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift, SharpError
+from rig.analysis.tracing.nameless.frames import PulledAside
 from rig.analysis.tracing.nameless.inertias import UnevenInertia
 from rig.analysis.tracing.nameless.loops import CouplingPlay, Creep, DraggedSensor, SensorLoop
 from rig.analysis.tracing.nameless.readings import (
@@ -226,6 +227,12 @@ CONFOUNDERS: Final = {
         UnevenInertia(),
         "load_angle",
         "The inertia on the output changes along its turn. No effect of the library does so.",
+    ),
+    "pulled_aside": Confounder(
+        PulledAside(),
+        "load",
+        "The load angle is shifted by the weights that hang on the output, in proportion to them, and by no other "
+        "torque, as where a weight pulls the shaft aside. No effect of the library does so.",
     ),
     "droop": Confounder(
         Droop(),
