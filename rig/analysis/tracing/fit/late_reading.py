@@ -25,9 +25,7 @@ LEAST: Final = 2e-5  # s; less is the jitter of a loop
 MOST: Final = 1e-3  # s, a cycle of a drive; what is later is left to be found
 SURE: Final = 4.0  # times half its 95 % interval
 HALF_A_CYCLE: Final = 5e-4  # s, how late or early a reading may well be before anything is known of it
-HARDLY: Final = (
-    5e-3  # relative, of the inertia: what moves it by less is whatever turns back in slow runs, and no delay
-)
+HARDLY: Final = 5e-3  # relative, of the inertia: what moves it by less is what slow runs do where they turn back
 AS_GOOD: Final = 0.3  # of the delay and of what it moves, half an interval: in two campaigns with a key, servos at
 # 1 kHz and order 2 at up to 13 Hz, the inertia was moved by 0.2 and 0.3 too much
 
@@ -38,8 +36,8 @@ def is_late(s: Solution) -> bool:
 
 
 def beside_a_late_reading(s: Solution) -> tuple[Solution, Array]:
-    """The solution beside that delay where it is sure and matters, as it is where not; and what is to be added to its covariance
-    (p, p) for a delay that is known so well, or for an inertia that would be another one beside it."""
+    """The solution beside that delay where it is sure and matters, as it is where not; and what is to be added to its
+    covariance (p, p) for a delay that is known so well, or for an inertia that would be another one beside it."""
     nothing = np.zeros_like(s.gram)
     if s.gram[INDEX[NAME], INDEX[NAME]] > UNSEEN or s.gram[INDEX["J_m"], INDEX["J_m"]] <= UNSEEN:
         return s, nothing
