@@ -19,6 +19,7 @@ from rig.analysis.tracing.runs.clocked import rate_by_speed, said_of
 from rig.analysis.tracing.runs.look import FIRST, Look
 from rig.analysis.tracing.runs.membership import one_rig, starts
 from rig.analysis.tracing.runs.mixed import mixed
+from rig.analysis.tracing.runs.motor_zero import other_zeros
 from rig.analysis.tracing.runs.odd_torques import odd_torques
 from rig.analysis.tracing.runs.record import record
 from rig.analysis.tracing.runs.recording import Recording
@@ -106,7 +107,7 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     clocked = [r for r in runs if r.clocked]
     unfit += [said_of(len(clocked), len(runs) - len(clocked), hz)] if hz is not None and clocked else []
     part = unfinished(folder)
-    said = told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out])
+    said = told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out, *other_zeros(runs)])
     notes = [*([part] if part else []), *unfit, *mixed(opened, discs), *said]
     if not runs:
         raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
