@@ -26,6 +26,7 @@ from rig.analysis.stiffness.spring_words import (
     parts_of,
     value_of,
 )
+from rig.analysis.stiffness.two_torques import torques_apart
 from rig.core.units import DEG, TURN
 
 MOVES = 0.05  # of the wind-up: a load that moves more is not locked
@@ -43,6 +44,10 @@ def add_stiffness(found: Findings, run: Source, motion: Motion, reference: Sourc
         found.sentence = "The shaft torque falls as the gear is wound up: one sensor has the wrong sign."
         found.reject(found.sentence)
         return
+    apart = torques_apart(motion, tau, motion.pick(run.column("tau_m")))
+    if apart:
+        found.cannot.append(apart)
+        found.inconclusive = apart
     T1, T2 = declared(run.declared, "T1"), declared(run.declared, "T2")
     error = None if reference is None else kinematic_error_reference(Tame(reference))
     s = measure(motion, tau, error, (T1, T2) if T1 and T2 else None, one_count(run, motion))
@@ -65,6 +70,7 @@ def add_stiffness(found: Findings, run: Source, motion: Motion, reference: Sourc
     _doubts(found, s)
     interval = f"({K - half:.0f} to {K + half:.0f}{less})"
     found.sentence = f"System torsional stiffness {K:.0f} N·m/rad {interval}{gap}; {_law(s)}."
+    found.sentence = f"{apart} {found.sentence}" if apart else found.sentence
     add_curves(found, s)
 
 

@@ -93,3 +93,22 @@ def test_the_figures_have_their_curves() -> None:
     curves = analyse(LockedGear(slip=((500.0, 0.5),)).run()).curves
     assert {"lock.windup", "lock.fit_torque", "tangent.measured", "loop.half_width", "creep.time"} <= set(curves)
     assert np.ptp(curves["lock.departure"]) > 0.9, "the loop stands out once the lines are taken off"
+
+
+@pytest.mark.parametrize(("scale", "apart"), [(1.0, False), (141.6, True), (1 / 141.6, True)], ids=str)
+def test_a_torque_that_the_motor_cannot_have_driven_is_told_and_nothing_is_judged(scale: float, apart: bool) -> None:
+    t = np.arange(0, 20.0, 0.004)
+    w = np.linspace(-0.007, 0.007, t.size)
+    torques = {"tau_l": scale * 7160 * w, "tau_m": 7160 * w / 50 + 0.2}
+    columns = {"t": t, "theta_m": count(50 * w, 65_536), "theta_l": np.zeros_like(t), **torques}
+    result = analyse(MadeRun(columns, {"procedure": "stiffness_lock", "gear": {"ratio": 50}}))
+    assert result.sentence.startswith("One of the torques seems to be in another unit: τ_l goes over") == apart
+    assert (result.verdict is Verdict.INCONCLUSIVE) == apart
+
+
+def test_a_gear_that_is_wound_up_from_its_output_tells_nothing_of_a_motor_that_a_brake_holds() -> None:
+    t = np.arange(0, 20.0, 0.004)
+    w = np.linspace(-0.007, 0.007, t.size)
+    held = {"theta_m": np.zeros_like(t), "theta_l": -w, "tau_l": 7160 * w, "tau_m": 1e-3 * np.sin(t)}
+    result = analyse(MadeRun({"t": t, **held}, {"procedure": "stiffness_lock", "gear": {"ratio": 50}}))
+    assert "another unit" not in result.sentence
