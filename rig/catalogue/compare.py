@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -199,9 +200,10 @@ def _remarks(found: Sequence[Row], known: Sequence[Mapping[str, Figure]]) -> lis
 def _unlike(a: Row, b: Row) -> str:
     """Procedure and conditions that differ, as "speed 9.6 rpm and 300 rpm"."""
     pairs = {"procedure": (a.procedure, b.procedure)}
-    for key in [*a.conditions, *(k for k in b.conditions if k not in a.conditions)]:
-        if key not in ("note", "assembly"):
-            pairs[key] = (a.conditions.get(key, "not said"), b.conditions.get(key, "not said"))
+    at_a, at_b = (json.loads(point(row).conditions) for row in (a, b))
+    for key in dict.fromkeys([*a.conditions, *b.conditions, *at_a, *at_b]):
+        if key in at_a or key in at_b:
+            pairs[key] = (at_a.get(key, "not said"), at_b.get(key, "not said"))
     return ", ".join(beside(key, x, y) for key, (x, y) in pairs.items() if x != y) or "their kind"
 
 

@@ -319,3 +319,14 @@ def test_runs_that_name_no_gear_are_compared_with_a_word(tmp_path: Path) -> None
     )
     named = run(tmp_path, DAYS[2])
     assert not any("gear.serial" in said for said in compare([a, named]).remarks)
+
+
+def test_runs_that_turned_at_other_speeds_which_nobody_stated_are_no_repeats(tmp_path: Path) -> None:
+    a, b, c = (
+        run(tmp_path, DAYS[0], k, rpm, half=1.0, name="mean_speed", conditions={})
+        for k, rpm in enumerate((169.1, 507.4, 169.8))
+    )
+    found = compare([a, b, c])
+    (remark,) = [said for said in found.remarks if "conditions" in said]
+    assert remark.startswith(b.name)
+    assert remark.endswith("speed 170 rpm and 510 rpm")
