@@ -20,14 +20,15 @@ DRAGS = ("B_sp", "B_m", "B_l")
 ABOVE_ZERO = ("J_m", "J_l", "K", "omega_s")  # what no gear is without
 BOUNDED = (*ABOVE_ZERO, "tau_c", "tau_s", "F_cl", "B_m", "B_ml", "B_l", "B_sp")
 FAR = 10.0  # times what is declared, or a part of it: no estimate of a builder is as far off
+SURELY = 5.0  # halves of its 95 % interval: a wrong sign makes it as large below zero, and chance a little
 COMPARED = ("K", "J_l", "J_m")
 
 
 def refuse_impossible(found: Mapping[str, Parameter]) -> None:
-    """Raises DataError for an inertia or a Coulomb friction that is measured to be negative."""
+    """Raises DataError for an inertia or a Coulomb friction that is measured to be far below zero."""
     for name, why in SIGNS.items():
         p = found.get(name)
-        if p is not None and _negative(p):
+        if p is not None and _negative(p) and p.value < -SURELY * p.half:
             raise DataError(f"{name} comes out at {_said(name, p)}, expected above 0: {why}")
 
 
