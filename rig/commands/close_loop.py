@@ -46,7 +46,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(bench=None)
     show_argument(parser)
     parser.add_argument(
-        "--budget-minutes", type=float, default=BUDGET, metavar="M", help=f"of rig time, at most ({BUDGET:g})"
+        "--budget-minutes",
+        type=float,
+        metavar="M",
+        help=f"of rig time, at most ({BUDGET:g}; a resumed loop keeps its own)",
     )
     parser.add_argument("--resume", type=Path, metavar="FOLDER", help="go on with the loop in this folder")
 
@@ -54,7 +57,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Begin or go on, round after round; then the story as JSON and as a page."""
     with refusing(args.json):
-        if not args.budget_minutes > 0:
+        if args.budget_minutes is not None and not args.budget_minutes > 0:
             raise UsageError(f"--budget-minutes {args.budget_minutes:g}: expected minutes of rig time above 0")
         return _resume(args) if args.resume else _begin(args)
 
@@ -67,18 +70,19 @@ def _begin(args: argparse.Namespace) -> int:
     seed = secrets.randbelow(SEEDS) if args.seed is None else args.seed
     campaign = planned(read_plan(args.plan), bench, seed)
     refuse_nobody(campaign, range(len(campaign.items)))
-    _refuse_beyond(campaign, range(len(campaign.items)), args.budget_minutes, 0.0)
+    budget = BUDGET if args.budget_minutes is None else args.budget_minutes
+    _refuse_beyond(campaign, range(len(campaign.items)), budget, 0.0)
     refuse_unwritable(args.out)
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     journal = new_journal(args.out, campaign, clock, overrides)
-    story = Story(journal.folder.name, bench.simulated, args.budget_minutes)
+    story = Story(journal.folder.name, bench.simulated, budget)
     write_story(journal.folder, story)
     with showing(args.json) as show:
         return _make(campaign, journal, clock, args.note, story, show)
 
 
 def _resume(args: argparse.Namespace) -> int:
-    """Plan, bench, seed and clock are those it began with; the budget may be raised."""
+    """Plan, bench, seed and clock are those it began with, and the budget where none is asked for."""
     from rig.closing.grow import regrown
     from rig.closing.story import End, read_story
 
@@ -90,8 +94,9 @@ def _resume(args: argparse.Namespace) -> int:
         print(line, file=sys.stderr)
     campaign = regrown(campaign, journal, story)
     refuse_nobody(campaign, journal.open_runs())
-    again = replace(story, end=End.OPEN, sentence="", budget_minutes=max(story.budget_minutes, args.budget_minutes))
-    _refuse_beyond(campaign, journal.open_runs(), again.budget_minutes, float(book["rig_time_s"]) / 60)
+    budget = story.budget_minutes if args.budget_minutes is None else args.budget_minutes
+    again = replace(story, end=End.OPEN, sentence="", budget_minutes=budget)
+    _refuse_beyond(campaign, journal.open_runs(), budget, float(book["rig_time_s"]) / 60)
     with showing(args.json) as show:
         return _make(campaign, journal, args.clock or book["clock"], args.note, again, show)
 
