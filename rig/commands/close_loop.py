@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.bench import Bench, ClockName
+from rig.bench import ClockName
 from rig.bench import read as read_bench
 from rig.campaign.changes import deeds
 from rig.campaign.dry_run import lasting
@@ -20,7 +20,7 @@ from rig.campaign.leaving import swept
 from rig.campaign.plan import PLANS, read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
-from rig.campaign.run import open_session
+from rig.campaign.run import nothing_left, open_session
 from rig.commands.campaign import DEFAULT, SEEDS, Terminal, overrides_of, refuse_nobody
 from rig.commands.options import bench_arguments, show_argument
 from rig.commands.show.at_the_rig import at_the_rig
@@ -88,17 +88,31 @@ def _resume(args: argparse.Namespace) -> int:
 
     journal, story = read_journal(args.resume), read_story(args.resume)
     book = journal.book
+    budget = story.budget_minutes if args.budget_minutes is None else args.budget_minutes
+    if story.finished(budget) and nothing_left(journal):
+        return _finished(journal, story, args.json)
     bench = read_bench(book["bench"]["source"], list(book["bench"]["overrides"]))
     campaign = planned(read_plan(str(journal.folder / "plan.toml")), bench, book["seed"])
     for line in take_up(journal):
         print(line, file=sys.stderr)
     campaign = regrown(campaign, journal, story)
     refuse_nobody(campaign, journal.open_runs())
-    budget = story.budget_minutes if args.budget_minutes is None else args.budget_minutes
     again = replace(story, end=End.OPEN, sentence="", budget_minutes=budget)
     _refuse_beyond(campaign, journal.open_runs(), budget, float(book["rig_time_s"]) / 60)
     with showing(args.json) as show:
         return _make(campaign, journal, args.clock or book["clock"], args.note, again, show)
+
+
+def _finished(journal: Journal, story: Story, json: bool) -> int:
+    """Nothing is left to do: told as it ended, its book closed where the program died before it was; the exit code."""
+    from rig.closing.run import exit_of, in_the_book
+
+    for line in take_up(journal):
+        print(line, file=sys.stderr)
+    journal.close("completed", in_the_book(journal, story.sentence))
+    with showing(json) as show:
+        show.say("this loop is finished: nothing is moved")
+        return _told(journal, story, exit_of(story), show)
 
 
 def _refuse_beyond(campaign: Campaign, runs: Sequence[int], budget: float, spent: float) -> None:
@@ -131,18 +145,23 @@ def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, sto
             lambda: (before + session.instruments.clock.now()) / 60, story,
         )  # fmt: skip
         exit = conduct(closing)
-    show.tell("campaign", folder=str(journal.folder), status=str(closing.story.end), runs=journal.count())
+    return _told(journal, closing.story, exit, show)
+
+
+def _told(journal: Journal, story: Story, exit: Exit, show: Show) -> int:
+    """The story on stdout and as a page; the exit code."""
+    show.tell("campaign", folder=str(journal.folder), status=str(story.end), runs=journal.count())
     show.leave(exit)
-    _tell(journal.folder, closing.story, bench, exit)
+    _tell(journal.folder, story, exit)
     return int(exit)
 
 
-def _tell(folder: Path, story: Story, bench: Bench, exit: Exit) -> None:
+def _tell(folder: Path, story: Story, exit: Exit) -> None:
     from rig.report.closing.page import write
     from rig.report.numbers import counted
 
     page = write(folder)
-    simulated = "SIMULATED " if bench.simulated else ""
+    simulated = "SIMULATED " if story.simulated else ""
     after = counted(len(story.rounds), "round")
     print(f"{simulated}loop {story.end.replace('_', ' ')} after {after}: {story.sentence}")
     for r in story.rounds:
