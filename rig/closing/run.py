@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 
+from rig.campaign.figures import write_missing_figures
 from rig.campaign.journal import Journal
 from rig.campaign.leaving import came_to_something
 from rig.campaign.run import check_facts, settle
@@ -24,6 +25,7 @@ def conduct(closing: Closing) -> Exit:
     session.facts = check_facts(journal)
     exit, status, sentence, close = Exit.INTERNAL, "failed", "an internal error ended it", journal.fail
     try:
+        write_missing_figures(journal, closing.desk.figure, closing.desk.say)
         settle(session, journal, closing.desk)
         story = closing.close()
         exit, sentence = exit_of(story), story.sentence
