@@ -55,11 +55,14 @@ class Series:
         seen = "no change larger than reproducibility"
         if marked:
             when = ", ".join(
-                f"{s.row.started_utc[:10]} by {_signed(s.figure.value - s.level)} {self.unit}".removesuffix(" 1")
-                for s in marked
+                f"{_when(s.row)} by {_signed(s.figure.value - s.level)} {self.unit}".removesuffix(" 1") for s in marked
             )
             seen = f"{len(marked)} change{'s' if len(marked) > 1 else ''} larger than reproducibility: {when}"
         return f"{seen}; {self.scatter.words(self.unit)}"
+
+
+def _when(row: Row) -> str:
+    return row.started_utc[:10] or row.path.name
 
 
 def _signed(value: float) -> str:
