@@ -9,6 +9,7 @@ from typing import Any
 
 from rig.bench import ClockName
 from rig.campaign.changes import bare, changes_between
+from rig.campaign.figures import write_figure, write_missing_figures
 from rig.campaign.journal import Journal
 from rig.campaign.leaving import came_to_something
 from rig.campaign.planner import Campaign
@@ -80,6 +81,7 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
         for told in unseen(campaign):
             desk.say(told)
             journal.tell(told)
+        write_missing_figures(journal, desk.figure, desk.say)
         settle(session, journal, desk)
         exit = make_runs(session, campaign, journal, desk)
         status = {Exit.PASS: "completed", Exit.STOPPED: "stopped", Exit.HALTED: "stopped"}.get(exit, "failed")
@@ -226,10 +228,5 @@ def _ended(journal: Journal, desk: Desk, index: int, done: Done) -> Exit:
     if status != "done":
         desk.say(f"run {status}: {done.ending.reason}")
         return done.ending.exit
-    try:
-        told = desk.figure(done.folder)
-    except HdrigError as error:  # the run is whole; what it says can be asked again
-        told = f"not analysed: {error}"
-    journal.figure(index, told)
-    desk.say(told)
+    write_figure(journal, index, done.folder, desk.figure, desk.say)
     return Exit.PASS

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -59,16 +59,29 @@ def names_of(word: str) -> tuple[str, ...]:
     return known.get(word.lower().replace("_", "-"), (word,))
 
 
-def refuse_unknown(word: str, seen: set[str], unanalysed: str) -> None:
-    """Raises UsageError for a figure that is in none of the runs looked at, which have those `seen`; `unanalysed` says
-    which of them were not analysed, "" where all were."""
+def bare(root: Path | str, folders: Sequence[Path], of: int) -> str:
+    """Says of the runs in `folders`, `of` so many, which have no figures, why, and what to do; "" of none."""
+    waiting = sum(1 for folder in folders if not (folder / NAME).exists())
+    said = []
+    if waiting:
+        verb, whose = ("is", "its") if waiting == 1 else ("are", "their")
+        said.append(f"{waiting} of {of} {verb} not analysed yet: `hdrig analyse {root}` makes {whose} figures")
+    if none := len(folders) - waiting:
+        verb, has, whose = ("was", "has", "its") if none == 1 else ("were", "have", "their")
+        said.append(f"{none} of {of} {verb} analysed and {has} no figures: {whose} {NAME} says why")
+    return "; ".join(said)
+
+
+def refuse_unknown(word: str, seen: set[str], bare: str) -> None:
+    """Raises UsageError for a figure that is in none of the runs looked at, which have those `seen`; `bare` says which
+    of them have none at all, "" where each has some."""
     if seen & set(names_of(word)):
         return
-    if unanalysed and not seen and names_of(word) != (word,):  # nothing is wrong with the word
-        raise UsageError(f"none of the runs has a figure '{word}' yet; {unanalysed}")
+    if bare and not seen and names_of(word) != (word,):  # nothing is wrong with the word
+        raise UsageError(f"none of the runs has a figure '{word}'; {bare}")
     words = {said for said in WORDS if not seen or seen & set(names_of(said))}  # none that no run can answer
     others = {*words, *seen} - {word}
-    more = f"; {unanalysed}" if unanalysed else ""
+    more = f"; {bare}" if bare else ""
     raise UsageError(f"none of the runs has a figure '{word}'; {nearest(word, others)}{more}")
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rig.catalogue.figures import Figure, common_label, figures, names_of, refuse_unknown
+from rig.catalogue.figures import Figure, bare, common_label, figures, names_of, refuse_unknown
 from rig.catalogue.filter import Filter
 from rig.catalogue.repeats import figure_of
 from rig.catalogue.row import Row, finite
@@ -55,11 +55,14 @@ class Series:
         seen = "no change larger than reproducibility"
         if marked:
             when = ", ".join(
-                f"{s.row.started_utc[:10]} by {_signed(s.figure.value - s.level)} {self.unit}".removesuffix(" 1")
-                for s in marked
+                f"{_when(s.row)} by {_signed(s.figure.value - s.level)} {self.unit}".removesuffix(" 1") for s in marked
             )
             seen = f"{len(marked)} change{'s' if len(marked) > 1 else ''} larger than reproducibility: {when}"
         return f"{seen}; {self.scatter.words(self.unit)}"
+
+
+def _when(row: Row) -> str:
+    return row.started_utc[:10] or row.path.name
 
 
 def _signed(value: float) -> str:
@@ -122,7 +125,7 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
     if not found:
         raise UsageError(f"there are no runs in {root}" + (f" of a gear '{gear}'" if gear else ""))
     if not kept:
-        refuse_unknown(figure, _seen(found), _unanalysed(root, found))
+        refuse_unknown(figure, _seen(found), bare(root, [row.path for row in found if not _names(row)], len(found)))
     numbers = _numbers(counted)
     series = tuple(_series(at, members, numbers) for (at, _), members in kept.items())
     copies |= {path: why for path, why in again.items() if figure_of(row_in(path), names_of(figure)) is not None}
@@ -144,18 +147,6 @@ def _sound(there: Row, copies: dict[Path, str], doubts: list[str]) -> Row | None
             return copy
     doubts.append(f"{there.path.name} is left out: its figures are in doubt: {doubt}")
     return None
-
-
-def _unanalysed(root: Path | str, found: Sequence[Row]) -> str:
-    """Says how many of the runs have no figures yet, and what makes them; "" where all have some."""
-    waiting = sum(1 for row in found if not _names(row))
-    if not waiting:
-        return ""
-    one = waiting == 1
-    return (
-        f"{waiting} of {len(found)} {'is' if one else 'are'} not analysed yet: `hdrig analyse {root}` makes "
-        f"{'its' if one else 'their'} figures"
-    )
 
 
 def _seen(found: Sequence[Row]) -> set[str]:

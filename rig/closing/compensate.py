@@ -11,6 +11,7 @@ from rig.analysis.across_runs.compensation import Expected, Followed, expected, 
 from rig.analysis.findings.result import Array
 from rig.analysis.orders.align import Alignment
 from rig.bench import Bench
+from rig.closing.other_gear import refuse_other_gear
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.core.units import ARCSEC, RPM
 from rig.model.fourier import FourierSeries
@@ -94,8 +95,9 @@ def motions(
 
 
 def refuse_first(bench: Bench, gear: GearFile, speeds_rpm: Sequence[float], revolutions: int) -> None:
-    """Raises NotReady or UsageError, before anything moves: a motion beyond the bench's limits, and a slowest speed at
-    which the gear's own dynamics make so much of the error that its series is not to be found in it."""
+    """Raises NotReady or UsageError, before anything moves: another gear, a motion beyond the bench's limits, and a
+    slowest speed at which the gear's own dynamics make so much of the error that its series is not found in it."""
+    refuse_other_gear(bench, gear)
     for speed in sorted(speeds_rpm, reverse=True):
         for motion in motions(bench, gear, gear.kinematic_error.series, speed, revolutions):
             refuse_endless(bench, motion)

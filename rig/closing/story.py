@@ -84,6 +84,11 @@ class Story:
     sentence: str = ""
     rounds: tuple[Round, ...] = field(default=())
 
+    def finished(self, budget_minutes: float) -> bool:
+        """Whether it came to an end that a budget of so many minutes of rig time does not open again."""
+        more = self.end is End.BUDGET and budget_minutes > self.budget_minutes
+        return self.end not in (End.OPEN, End.STOPPED) and not more
+
 
 def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> Round:
     """A round from its trace."""

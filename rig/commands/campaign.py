@@ -14,6 +14,7 @@ from rig.bench import Bench, ClockName
 from rig.bench import read as read_bench
 from rig.campaign import dry_run, summary
 from rig.campaign.changes import ByHand, deeds
+from rig.campaign.figures import write_missing_figures
 from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
 from rig.campaign.leaving import swept
 from rig.campaign.plan import PLANS, Plan, read_plan
@@ -116,6 +117,7 @@ def _resume(args: argparse.Namespace) -> int:
             journal.skip(number - 1, operator() or "the operator")
     with showing(args.json) as show:
         if nothing_left(journal):
+            write_missing_figures(journal, figure, show.say)
             show.say("every run of this campaign is settled: nothing is moved")
             return _told(journal, close_settled(journal), show)
         return make(campaign, journal, args.clock or book["clock"], args, show)
@@ -192,13 +194,17 @@ class Terminal(Desk):
         return self.bench.by_person and self.person.again(why)
 
     def figure(self, folder: Path) -> str:
-        """The run is whole and can be analysed again: nothing its analysis stumbles over may end the campaign."""
-        try:
-            from rig.evaluation.run import analyse_folder
+        return figure(folder)
 
-            return analyse_folder(folder, folder)[0].sentence
-        except STUMBLES as error:
-            raise DataError(broke_off(folder, error)) from error
+
+def figure(folder: Path) -> str:
+    """The run is whole and can be analysed again: nothing its analysis stumbles over may end the campaign."""
+    try:
+        from rig.evaluation.run import analyse_folder
+
+        return analyse_folder(folder, folder)[0].sentence
+    except STUMBLES as error:
+        raise DataError(broke_off(folder, error)) from error
 
 
 def _plan_of(journal: Journal) -> str:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rig.bench import Bench, ClockName
+from rig.bench import ClockName
 from rig.bench import read as read_bench
 from rig.campaign.changes import deeds
 from rig.campaign.dry_run import lasting
@@ -20,7 +20,7 @@ from rig.campaign.leaving import swept
 from rig.campaign.plan import PLANS, read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
-from rig.campaign.run import open_session
+from rig.campaign.run import nothing_left, open_session
 from rig.commands.campaign import DEFAULT, SEEDS, Terminal, overrides_of, refuse_nobody
 from rig.commands.options import bench_arguments, show_argument
 from rig.commands.show.at_the_rig import at_the_rig
@@ -46,7 +46,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(bench=None)
     show_argument(parser)
     parser.add_argument(
-        "--budget-minutes", type=float, default=BUDGET, metavar="M", help=f"of rig time, at most ({BUDGET:g})"
+        "--budget-minutes",
+        type=float,
+        metavar="M",
+        help=f"of rig time, at most ({BUDGET:g}; a resumed loop keeps its own)",
     )
     parser.add_argument("--resume", type=Path, metavar="FOLDER", help="go on with the loop in this folder")
 
@@ -54,7 +57,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Begin or go on, round after round; then the story as JSON and as a page."""
     with refusing(args.json):
-        if not args.budget_minutes > 0:
+        if args.budget_minutes is not None and not args.budget_minutes > 0:
             raise UsageError(f"--budget-minutes {args.budget_minutes:g}: expected minutes of rig time above 0")
         return _resume(args) if args.resume else _begin(args)
 
@@ -67,33 +70,49 @@ def _begin(args: argparse.Namespace) -> int:
     seed = secrets.randbelow(SEEDS) if args.seed is None else args.seed
     campaign = planned(read_plan(args.plan), bench, seed)
     refuse_nobody(campaign, range(len(campaign.items)))
-    _refuse_beyond(campaign, range(len(campaign.items)), args.budget_minutes, 0.0)
+    budget = BUDGET if args.budget_minutes is None else args.budget_minutes
+    _refuse_beyond(campaign, range(len(campaign.items)), budget, 0.0)
     refuse_unwritable(args.out)
     clock: ClockName = args.clock or ("virtual" if bench.simulated else "wall")
     journal = new_journal(args.out, campaign, clock, overrides)
-    story = Story(journal.folder.name, bench.simulated, args.budget_minutes)
+    story = Story(journal.folder.name, bench.simulated, budget)
     write_story(journal.folder, story)
     with showing(args.json) as show:
         return _make(campaign, journal, clock, args.note, story, show)
 
 
 def _resume(args: argparse.Namespace) -> int:
-    """Plan, bench, seed and clock are those it began with; the budget may be raised."""
+    """Plan, bench, seed and clock are those it began with, and the budget where none is asked for."""
     from rig.closing.grow import regrown
     from rig.closing.story import End, read_story
 
     journal, story = read_journal(args.resume), read_story(args.resume)
     book = journal.book
+    budget = story.budget_minutes if args.budget_minutes is None else args.budget_minutes
+    if story.finished(budget) and nothing_left(journal):
+        return _finished(journal, story, args.json)
     bench = read_bench(book["bench"]["source"], list(book["bench"]["overrides"]))
     campaign = planned(read_plan(str(journal.folder / "plan.toml")), bench, book["seed"])
     for line in take_up(journal):
         print(line, file=sys.stderr)
     campaign = regrown(campaign, journal, story)
     refuse_nobody(campaign, journal.open_runs())
-    again = replace(story, end=End.OPEN, sentence="", budget_minutes=max(story.budget_minutes, args.budget_minutes))
-    _refuse_beyond(campaign, journal.open_runs(), again.budget_minutes, float(book["rig_time_s"]) / 60)
+    again = replace(story, end=End.OPEN, sentence="", budget_minutes=budget)
+    _refuse_beyond(campaign, journal.open_runs(), budget, float(book["rig_time_s"]) / 60)
     with showing(args.json) as show:
         return _make(campaign, journal, args.clock or book["clock"], args.note, again, show)
+
+
+def _finished(journal: Journal, story: Story, json: bool) -> int:
+    """Nothing is left to do: told as it ended, its book closed where the program died before it was; the exit code."""
+    from rig.closing.run import exit_of, in_the_book
+
+    for line in take_up(journal):
+        print(line, file=sys.stderr)
+    journal.close("completed", in_the_book(journal, story.sentence))
+    with showing(json) as show:
+        show.say("this loop is finished: nothing is moved")
+        return _told(journal, story, exit_of(story), show)
 
 
 def _refuse_beyond(campaign: Campaign, runs: Sequence[int], budget: float, spent: float) -> None:
@@ -126,18 +145,23 @@ def _make(campaign: Campaign, journal: Journal, clock: ClockName, note: str, sto
             lambda: (before + session.instruments.clock.now()) / 60, story,
         )  # fmt: skip
         exit = conduct(closing)
-    show.tell("campaign", folder=str(journal.folder), status=str(closing.story.end), runs=journal.count())
+    return _told(journal, closing.story, exit, show)
+
+
+def _told(journal: Journal, story: Story, exit: Exit, show: Show) -> int:
+    """The story on stdout and as a page; the exit code."""
+    show.tell("campaign", folder=str(journal.folder), status=str(story.end), runs=journal.count())
     show.leave(exit)
-    _tell(journal.folder, closing.story, bench, exit)
+    _tell(journal.folder, story, exit)
     return int(exit)
 
 
-def _tell(folder: Path, story: Story, bench: Bench, exit: Exit) -> None:
+def _tell(folder: Path, story: Story, exit: Exit) -> None:
     from rig.report.closing.page import write
     from rig.report.numbers import counted
 
     page = write(folder)
-    simulated = "SIMULATED " if bench.simulated else ""
+    simulated = "SIMULATED " if story.simulated else ""
     after = counted(len(story.rounds), "round")
     print(f"{simulated}loop {story.end.replace('_', ' ')} after {after}: {story.sentence}")
     for r in story.rounds:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 from rig.core.nearest import nearest
 
@@ -24,7 +25,7 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
     """The first complaint of pydantic as one sentence: key, value, what was expected, nearest valid key."""
     found = error.errors(include_url=False)
     first = next((e for e in found if e["type"] == "extra_forbidden"), found[0])  # a typo also shows as a missing key
-    path = [str(p) for p in first["loc"]]
+    path = [str(p + 1 if isinstance(p, int) else p) for p in first["loc"]]  # people count from 1
     key = ".".join(path) or "the file"
     match first["type"]:
         case "extra_forbidden":
@@ -38,7 +39,7 @@ def sentence(error: ValidationError, model: type[BaseModel]) -> str:
             keys = ", ".join(_keys_beside(model, [*path, ""])[:3])
             return f"{key} = {_shown(first['input'])}: expected a table of keys such as {keys}"
         case kind:
-            expected = WORDS.get(kind) or _expected(first["msg"], first["input"])
+            expected = WORDS.get(kind) or _expected(first)
             unit = _unit_note(model, path)
             of_value = unit if type(first["input"]) in (int, float) else ""  # text may have one of its own
             of_bound = unit if kind in BOUNDS else " in" * bool(unit) + unit if kind in NUMBERS else ""
@@ -51,11 +52,13 @@ def _shown(given: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _expected(said: str, given: object) -> str:
+def _expected(first: ErrorDetails) -> str:
     """What pydantic wanted, to stand behind "expected": of no number it names the limit that it is not within."""
-    if isinstance(given, float) and not math.isfinite(given):
+    if isinstance(first["input"], float) and not math.isfinite(first["input"]):
         return "a finite number"
-    said = said.removeprefix("Input should be ")
+    if first["type"] == "too_short":
+        return f"a list of {first['ctx']['min_length']} or more"
+    said = first["msg"].removeprefix("Input should be ")
     return said.replace("String should have", "a text of").replace("String should match", "a text that matches")
 
 

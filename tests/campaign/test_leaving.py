@@ -16,6 +16,7 @@ from rig.core.errors import NotReady
 from rig.core.operator import HangWeight, Rigging
 from rig.runfile.folder import create_in
 from tests.campaign.plans import REST, campaign, plan
+from tests.commands.made_run import made_run
 
 VERBS = (
     ["campaign", "quick"],
@@ -106,6 +107,20 @@ def test_a_campaign_with_nothing_left_to_make_is_closed_without_touching_the_rig
     assert main(["campaign", "--resume", str(journal.folder)]) == 0  # there is no bus: it was not opened
     assert read_journal(journal.folder).book["status"] == "completed"
     assert "nothing is moved" in "".join(capsys.readouterr())
+
+
+def test_a_run_whose_analysis_was_killed_is_analysed_before_the_campaign_is_closed(
+    no_bus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    journal = new_journal(tmp_path, campaign(REST, bench=read(str(no_bus))), "wall", [])
+    (journal.folder / "plan.toml").write_text(plan(REST).text, encoding="utf-8")
+    journal.end(0, "done", "completed", made_run(journal.folder / "the-run"))
+    journal.close("stopped", "killed")
+    for _ in range(2):  # the second time it has its figure
+        assert main(["campaign", "--resume", str(journal.folder)]) == 0
+    assert (journal.folder / "the-run" / "result.json").exists()
+    assert "arcsec" in read_journal(journal.folder).book["runs"][0]["figure"]
+    assert "".join(capsys.readouterr()).count("run 1 was made and not analysed: the-run") == 1
 
 
 def test_a_campaign_whose_runs_are_all_made_and_whose_weight_still_hangs_has_something_left(tmp_path: Path) -> None:

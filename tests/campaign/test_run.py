@@ -241,3 +241,15 @@ def test_a_note_of_the_campaign_stands_in_every_run_and_check_also_of_a_later_se
     assert len({about["campaign"]["session"] for about in found.values()}) == 2
     assert {str(about["conditions"]["note"]).split("; ")[0] for about in found.values()} == {"new grease"}
     assert "note: new grease" in list(summary.lines(journal))
+
+
+@pytest.mark.slow
+def test_a_run_whose_analysis_was_killed_is_analysed_before_anything_moves(tmp_path: Path) -> None:
+    planned = campaign(REST, REST)
+    _, journal, _ = make(tmp_path, planned, stop_at=2)
+    take_up(journal)
+    told = journal.book["runs"][0].pop("figure")
+    exit, _, desk = go_on(journal, planned)
+    assert (exit, journal.book["runs"][0]["figure"]) == (Exit.PASS, told)
+    first = desk.said.index(told)
+    assert first < next(k for k, said in enumerate(desk.said) if said.startswith("sign and scale"))

@@ -194,10 +194,23 @@ def test_a_trend_over_runs_that_were_not_analysed_says_what_analyses_them(tmp_pa
     (folders[2] / "result.json").unlink()
     told = f"; 3 of 3 are not analysed yet: `hdrig analyse {tmp_path}` makes their figures$"
     for word in ("peak-to-peak", "PEAK_to_peak"):
-        with pytest.raises(UsageError, match=f"^none of the runs has a figure '{word}' yet{told}"):
+        with pytest.raises(UsageError, match=f"^none of the runs has a figure '{word}'{told}"):
             trend(tmp_path, word)
     with pytest.raises(UsageError, match=f"^none of the runs has a figure 'peek-to-peak'; did you mean .*{told}"):
         trend(tmp_path, "peek-to-peak")
+
+
+def test_a_trend_over_runs_whose_analysis_found_no_figures_does_not_ask_for_it_again(tmp_path: Path) -> None:
+    folders = [run(tmp_path, DAYS[0], number) for number in range(3)]
+    for folder in folders[:2]:
+        (folder / "result.json").write_text('{"estimates": {}}')
+    told = "2 of 3 were analysed and have no figures: their result.json says why$"
+    with pytest.raises(UsageError, match=f"figure 'K1'; expected one of .*peak-to-peak; {told}"):
+        trend(tmp_path, "K1")
+    (folders[2] / "result.json").unlink()
+    waiting = f"1 of 3 is not analysed yet: `hdrig analyse {tmp_path}` makes its figures"
+    with pytest.raises(UsageError, match=f"^none of the runs has a figure 'K1'; {waiting}; {told}"):
+        trend(tmp_path, "K1")
 
 
 def test_both_are_json_for_programs_and_lines_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

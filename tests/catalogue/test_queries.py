@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
@@ -27,6 +28,8 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[tuple[An
     run(root, "2026-11-18", 7, gear={"serial": "SN2"}, value=70.0)
     run(root, "2026-11-18", 8, status="tripped")
     run(root, "2026-11-18", 9, 39.0, name="fourier_amplitude_2", software={"commit": "fedcba9876"})
+    loaded = {"tau_ext": 20.0, "speed_rpm": 9.6}
+    run(root, "2026-11-18", 10, 45.0, name="fourier_amplitude_2", software={"commit": "fedcba9876"}, conditions=loaded)
     for name in ("manifest.json", "result.json"):
         (root / f"damaged-{name}").mkdir()
         (root / f"damaged-{name}" / name).write_text('{"schema": "hdrig.run/1", "proc')
@@ -40,7 +43,7 @@ def answer(answers: dict[str, list[tuple[Any, ...]]], number: int) -> list[tuple
 
 def test_runs_are_counted_by_gear_procedure_verdict(answers: dict[str, list[tuple[Any, ...]]]) -> None:
     assert [row[:4] for row in answer(answers, 1)] == [
-        ("SN1", "kinematic_error", "PASS", 11),
+        ("SN1", "kinematic_error", "PASS", 12),
         ("SN2", "kinematic_error", "PASS", 1),
     ]
 
@@ -64,8 +67,17 @@ def test_scatter_within_and_between_assemblies_is_told_apart(answers: dict[str, 
 
 
 def test_a_figure_is_told_by_commit(answers: dict[str, list[tuple[Any, ...]]]) -> None:
-    assert [(row[1], row[3], row[4]) for row in answer(answers, 5)] == [("fedcba9", 1, 39.0)]
+    assert [(row[2], row[4], row[5]) for row in answer(answers, 5)] == [("fedcba9", 1, 39.0), ("fedcba9", 1, 45.0)]
+    assert [row[1] for row in answer(answers, 5)] == [0.0, 20.0]
 
 
 def test_samples_are_read_across_runs(answers: dict[str, list[tuple[Any, ...]]]) -> None:
     assert answer(answers, 6) == [("SN1", "kinematic_error", 9, 18, 0.6, 50.0)]
+
+
+def test_samples_are_read_where_no_run_has_what_the_drive_was_given(tmp_path: Path) -> None:
+    table = pa.table({"t": [0.0, 0.1], "tau_m": [0.4, -0.5]})
+    pq.write_table(table, run(tmp_path, "2026-11-16") / "samples.parquet")
+    connection = duckdb.connect()
+    *_, last = [connection.execute(sql).fetchall() for sql in queries(tmp_path).values()]
+    assert last == [("SN1", "kinematic_error", 1, 2, 0.499, 100.0)]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from rig.bench import read
+from rig.cli import main
 from rig.closing.compensate import compensate, refuse_first, unlike_the_series
-from rig.core.errors import HdrigError, NotReady, UsageError
+from rig.core.errors import Exit, HdrigError, NotReady, UsageError
+from rig.model.gearfile import GearFile, dumps
 from rig.process.interrupts import Interrupts
 from rig.session import Session
 from tests.closing.test_compensate import gear
@@ -41,6 +44,38 @@ def test_where_no_speed_would_do_none_is_advised(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("rig.closing.compensate.unlike_the_series", lambda gear, speed: "all of it is something else")
     with pytest.raises(UsageError, match=r"--speed 9\.6: .*: expected a gear file of slow runs: down to 0\.6 rpm"):
         refuse_first(read("twin"), gear(), (9.6,), 3)
+
+
+def of(serial: str, ratio: float) -> GearFile:
+    known = gear()
+    N = replace(known.parameters["N"], value=ratio)
+    return replace(known, serial=serial, parameters={**known.parameters, "N": N})
+
+
+@pytest.mark.parametrize(("serial", "ratio"), [("X-1", 50.0), ("TWIN-40-50", 100.0), ("", 100.0)])
+def test_the_file_of_another_gear_is_refused_with_both_ratios_and_serials(serial: str, ratio: float) -> None:
+    with pytest.raises(UsageError) as refused:
+        refuse_first(read("twin"), of(serial, ratio), (9.6,), 3)
+    for said in (f"gear {serial or 'without serial'}, ratio {ratio:g}", "gear TWIN-40-50, ratio 50"):
+        assert said in str(refused.value)
+
+
+@pytest.mark.parametrize("serial", ["", "TWIN-40-50"])
+def test_a_file_that_names_no_serial_is_taken_by_its_ratio(serial: str) -> None:
+    refuse_first(read("twin"), of(serial, 50.0), (9.6,), 3)
+
+
+@pytest.mark.parametrize("option", ["--gear", "--campaign"])
+def test_nothing_is_made_of_another_gear_by_either_option(
+    option: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "gear.toml").write_text(dumps(of("X-1", 100.0)), encoding="utf-8")
+    monkeypatch.setattr("rig.commands.compensate.gear_of", lambda folders, terms, say: of("X-1", 100.0))
+    monkeypatch.setattr("rig.commands.compensate.expand", lambda paths: paths)
+    out = tmp_path / "out"
+    assert main(["compensate", option, str(tmp_path / "gear.toml"), "--out", str(out)]) == Exit.USAGE
+    assert "gear X-1, ratio 100" in capsys.readouterr().err
+    assert not out.exists() or not list(out.iterdir())
 
 
 def test_at_a_slow_speed_the_error_is_the_series() -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
+from rig.bench import read
+from rig.campaign.journal import new_journal, read_journal
+from rig.campaign.plan import read_plan
+from rig.campaign.planner import planned
+from rig.cli import main
 from rig.closing.story import End, Story, write_story
 from rig.commands import close_loop
 from rig.core.errors import Exit
@@ -24,8 +27,7 @@ def test_the_folder_to_go_on_with_can_be_copied_whatever_its_name(
     folder.mkdir()
     story = Story("c", True, 60.0, End.STOPPED, "Stopped by the operator.")
     write_story(folder, story)
-    bench: Any = SimpleNamespace(simulated=True)
-    close_loop._tell(folder, story, bench, Exit.STOPPED)
+    close_loop._tell(folder, story, Exit.STOPPED)
     said = capsys.readouterr()
     assert "after 0 rounds: Stopped" in said.out
     assert shlex.split(said.err)[:4] == ["hdrig", "close-loop", "--resume", str(folder)]
@@ -37,3 +39,57 @@ def test_every_round_leaves_the_trace_and_its_page(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(trace_page, "render", lambda trace, origin: "page")
     assert trace_folder(tmp_path) is made
     assert {path.name for path in tmp_path.iterdir()} == {"trace.json", "report.html"}
+
+
+@pytest.fixture
+def begun(tmp_path: Path) -> Path:
+    """The folder of a loop on the twin that was stopped before its first run, with 12 min to go on."""
+    campaign = planned(read_plan("quick"), read("twin"), 1)
+    journal = new_journal(tmp_path, campaign, "virtual", [])
+    write_story(journal.folder, Story(journal.folder.name, True, 12.0, End.STOPPED, "Stopped by the operator."))
+    journal.close("stopped", "Stopped by the operator.")
+    return journal.folder
+
+
+@pytest.mark.parametrize(("words", "minutes"), [([], 12.0), (["--budget-minutes", "30"], 30.0)])
+def test_a_resumed_loop_keeps_its_budget_unless_another_is_asked_for(
+    words: list[str], minutes: float, begun: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[Story] = []
+    monkeypatch.setattr(close_loop, "_make", lambda *given: made.append(given[4]) or 0)
+    assert main(["close-loop", "--resume", str(begun), *words]) == Exit.PASS
+    assert [story.budget_minutes for story in made] == [minutes]
+
+
+def ended(folder: Path, end: End) -> None:
+    """The loop in `folder` with every run made and that end."""
+    journal = read_journal(folder)
+    for index in journal.open_runs():
+        journal.end(index, "done", "completed")
+    write_story(folder, Story(folder.name, True, 12.0, end, "The verdict."))
+
+
+@pytest.mark.parametrize(("end", "exit"), [(End.EXPLAINED, Exit.PASS), (End.UNKNOWN, Exit.INCOMPLETE)])
+def test_a_finished_loop_is_told_as_it_ended_and_nothing_is_moved(
+    end: End, exit: Exit, begun: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ended(begun, end)
+    before = (begun / "close-loop.json").read_bytes()
+    monkeypatch.setattr(close_loop, "_make", lambda *given: pytest.fail("it goes on"))
+    assert main(["close-loop", "--resume", str(begun)]) == exit
+    said = capsys.readouterr()
+    assert "this loop is finished: nothing is moved" in said.err
+    assert f"loop {end} after 0 rounds: The verdict." in said.out
+    assert (begun / "close-loop.json").read_bytes() == before
+    assert read_journal(begun).book["status"] == "completed"
+
+
+def test_a_loop_that_ended_for_its_budget_goes_on_with_more_of_it(begun: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ended(begun, End.BUDGET)
+    made: list[object] = []
+    monkeypatch.setattr(close_loop, "_make", lambda *given: made.append(given) or 0)
+    for words in ([], ["--budget-minutes", "12"]):
+        assert main(["close-loop", "--resume", str(begun), *words]) == Exit.INCOMPLETE
+    assert made == []
+    assert main(["close-loop", "--resume", str(begun), "--budget-minutes", "30"]) == Exit.PASS
+    assert len(made) == 1

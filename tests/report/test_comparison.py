@@ -78,3 +78,27 @@ def test_one_run_alone_has_its_date_below_it(tmp_path: Path) -> None:
     figure = course.drawing(series).draw(course.curves_of(series), Frame(760.0))
     assert figure is not None
     assert list(figure.axes[0].get_xticks()) == [1]
+
+
+def test_undated_runs_are_said_to_lie_in_the_order_of_their_names(tmp_path: Path) -> None:
+    for k in range(5):
+        run(tmp_path, DAYS[0], k, 90.0 + 0.1 * (k % 3), started_utc=None)
+    again = {"speed_rpm": 9.6, "tau_ext": 0.0, "assembly": 2}
+    run(tmp_path, DAYS[1], 6, 95.0, started_utc=None, conditions=again)
+    text = trend_page.render(trend(tmp_path, "peak-to-peak"))
+    assert "in order of time" not in text
+    assert "in the order of their names, for they are undated" in text
+    assert "Runs in the order of their names" in text
+    assert "run 1</text>" in text
+    assert "larger than reproducibility: 0006-kinematic-error-2 by +4.92 arcsec" in text
+    run(tmp_path, DAYS[1], 7, 95.0)
+    assert "undated ones before the others" in trend_page.render(trend(tmp_path, "peak-to-peak"))
+
+
+def test_the_values_of_a_large_figure_stand_whole_at_the_axis(tmp_path: Path) -> None:
+    for k in range(3):
+        run(tmp_path, DAYS[0], k, 12100.0 + 0.01 * k, half=0.01)
+    (series,) = trend(tmp_path, "peak-to-peak").series
+    drawn = str(svg(course.drawing(series), course.curves_of(series), Frame(760.0)))
+    assert "12100.03" in drawn
+    assert "+1.21" not in drawn

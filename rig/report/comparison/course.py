@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter
@@ -14,15 +16,35 @@ from rig.report.palette import LIGHT
 BAND, EDGE = 1.0, 0.08  # of the span of the runs: what is shown of the band beyond them, and room beside
 
 NOTE = (
-    "Each point is a run with its 95 % interval, in order of time; a thin line stands where the rig was assembled anew "
+    "Each point is a run with its 95 % interval, {order}; a thin line stands where the rig was assembled anew "
     "or another day began. The band is where a run of an unchanged gear stays in 99 of 100 cases, about the mean "
     "of the runs since the last change. A diamond is a run beyond it. A band that fills the panel is wider than that."
 )
 
 
+def order_of(days: Sequence[str]) -> str:
+    """How runs of those days lie, "" the day of one that is undated: as the catalogue sorts them."""
+    if all(days):
+        return "in order of time"
+    if not any(days):
+        return "in the order of their names, for they are undated"
+    return "in order of time, undated ones before the others in the order of their names"
+
+
+def days_of(series: Series) -> list[str]:
+    """The day of each run; "" where it is undated."""
+    return [spot.row.started_utc[:10] for spot in series.spots]
+
+
+def note(found: Sequence[Series]) -> str:
+    """How the drawings of a page are read."""
+    return NOTE.format(order=order_of([day for series in found for day in days_of(series)]))
+
+
 def drawing(series: Series) -> Drawing:
-    """The course of one series; its dates stand below the axis."""
-    days = [spot.row.started_utc[:10] for spot in series.spots]
+    """The course of one series; its dates stand below the axis, the number of the run where it has none."""
+    days = days_of(series)
+    marks = [day or f"run {k}" for k, day in enumerate(days, 1)]
 
     def draw(curves: Curves, frame: Frame) -> Figure | None:
         """Value with interval by number of the run; columns as `curves_of` makes them."""
@@ -44,9 +66,9 @@ def drawing(series: Series) -> Drawing:
         panel.xaxis.set_major_locator(
             FixedLocator(list(range(1, len(days) + 1, -(-len(days) // int(frame.pick(7, 3))))))
         )
-        panel.xaxis.set_major_formatter(FuncFormatter(lambda k, _: days[int(k) - 1] if 1 <= k <= len(days) else ""))
+        panel.xaxis.set_major_formatter(FuncFormatter(lambda k, _: marks[int(k) - 1] if 1 <= k <= len(days) else ""))
         title(panel, series.label, series.unit)
-        foot(panel, "Runs in order of time, by their day")
+        foot(panel, f"Runs {order_of(days)}" + (", by their day" if all(days) else ""))
         return figure
 
     def say(curves: Curves) -> str:
@@ -54,7 +76,7 @@ def drawing(series: Series) -> Drawing:
         value = curves["value"]
         return f"{series.label}, {plain(value.min(), 4)} to {plain(value.max(), 4)} {series.unit}: {series.sentence}."
 
-    return Drawing("course", series.title, NOTE, draw, say)
+    return Drawing("course", series.title, note([series]), draw, say)
 
 
 def _shown(curves: Curves) -> tuple[float, float]:

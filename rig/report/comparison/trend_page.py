@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from rig.catalogue.trend import Series, Trend
 from rig.report import words as run_words
-from rig.report.comparison.course import NOTE, curves_of, drawing
+from rig.report.comparison.course import curves_of, drawing, note
 from rig.report.figures import Frame, svg
 from rig.report.shell import NARROW, WIDE, css, environment
 from rig.runfile.manifest import write_atomic
@@ -34,7 +34,7 @@ def render(found: Trend) -> str:
         "left_out": found.left_out,
         "copies": found.copies,
         "series": [_series(k, s, origin.mark) for k, s in enumerate(found.series)],
-        "note": NOTE,
+        "note": note(found.series),
         "css": css("trend", origin.mark),
     }
     return environment(HERE).get_template("trend.html").render(view)

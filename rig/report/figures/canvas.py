@@ -56,6 +56,7 @@ STYLE: dict[str, Any] = {
     "ytick.major.size": 0.0,
     "ytick.major.pad": 6.0,
     "axes.unicode_minus": True,
+    "axes.formatter.useoffset": False,  # it would stand over the title
 }
 """What a panel begins with: told beforehand, for each tick that is changed later is made anew."""
 

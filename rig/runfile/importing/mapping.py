@@ -142,11 +142,11 @@ def _dialect(raw: Section) -> Dialect:
         units_row=raw.flag("units_row", False),
         names=raw.texts("names"),
     )
+    raw.done()  # first: a misspelt delimiter leaves the usual one, which may not go with decimal
     if len(dialect.delimiter) != 1 or dialect.delimiter in '\r\n"':
         raw.refuse("delimiter", dialect.delimiter, "one character, such as ',', ';' or '\\t'")
     if dialect.delimiter == dialect.decimal:
         raw.refuse("delimiter", dialect.delimiter, f"another character than decimal = '{dialect.decimal}'")
-    raw.done()
     return dialect
 
 

@@ -97,6 +97,7 @@ WRONG = [
     ("[channels.temperature]", '[channels."a b"]', "channels.a b is no name for a channel"),
     ("[gear]", '[csv]\ndelimiter = ",,"\n[gear]', "csv.delimiter = ',,': expected one character"),
     ("[gear]", '[csv]\ndecimal = ","\n[gear]', "csv.delimiter = ',': expected another character than decimal"),
+    ("[gear]", '[csv]\ndelimeter = ";"\ndecimal = ","\n[gear]', "unknown key 'csv.delimeter'; did you mean 'deli"),
     ("[gear]", "[csv]\nskip_lines = 2\n[gear]", "unknown key 'csv.skip_lines'; did you mean 'skip_rows'?"),
     ("[gear]", "[conditions]\noutput_locked = 1\n[gear]", "conditions.output_locked = 1: expected true or false"),
     ("[gear]", "[conditions]\ntau_exp = 1\n[gear]", "unknown key 'conditions.tau_exp'; did you mean 'tau_ext'?"),
