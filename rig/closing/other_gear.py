@@ -12,13 +12,12 @@ SAME = 1e-6  # of the ratio: a count of teeth, written down with a few digits
 
 
 def refuse_other_gear(bench: Bench, gear: GearFile) -> None:
-    """The error of another gear fed forward makes this one's worse. Raises UsageError; where only one of the two names
-    a serial, the ratio decides."""
+    """The error of another gear fed forward makes this one's worse. Raises UsageError; where the file names no serial
+    the ratio decides."""
     here, ratio = bench.file.gear, gear.parameters["N"].value
-    alike = gear.serial == here.serial or not (gear.serial and here.serial)
-    if math.isclose(ratio, here.N, rel_tol=SAME) and alike:
+    if math.isclose(ratio, here.N, rel_tol=SAME) and gear.serial in ("", here.serial):
         return
     raise UsageError(
         f"the error to feed forward is of gear {gear.serial or 'without serial'}, ratio {ratio:.9g}, and bench "
-        f"'{bench.file.name}' declares gear {here.serial or 'without serial'}, ratio {here.N:.9g}; expected the gear that is on the bench"
+        f"'{bench.file.name}' declares gear {here.serial}, ratio {here.N:.9g}; expected the gear that is on the bench"
     )
