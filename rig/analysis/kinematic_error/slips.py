@@ -25,6 +25,8 @@ LEAST: Final = 3.0  # arcsec: less is no slip that anybody looks for in one run
 BESIDE: Final = 0.2  # of the largest: what the trend and the mean turn make of it is less
 STAYS: Final = 0.5  # of the step, which the longer stretches must be apart by: the trend that was taken off leans on it
 SLOWER: Final = 1.02  # times as long as usual for a sixteenth of a turn: a ramp of the speed is over by then
+NEAR: Final = 2 * WINDOW * TURN / GRID  # rad
+SHADOW: Final = 1.5  # times what a slip leaves in the mean turn: the trend that is taken off shares in it
 TOLD: Final = 3  # slips told one by one
 SIGMA: Final = 1.4826  # of normal noise, over its median size
 
@@ -36,6 +38,9 @@ class Slip:
     row: int
     size: float
     half: float
+    angle: float = 0.0  # rad of the motor
+    turns: int = 0  # in its direction, it among them
+    direction: int = 0
 
     def words(self, motion: Motion) -> str:
         """ "by 40.2 ± 1.1 arcsec at t = 33.30 s"."""
@@ -67,12 +72,23 @@ def find_slips(motion: Motion, strokes: Sequence[Stroke], results: Sequence[Stro
     sigma = SIGMA * float(np.median(np.abs(np.concatenate(known))))
     least = max(FAR * sigma, LEAST, BESIDE * max(float(np.abs(a).max()) for a in known))
     found = []
-    for stroke, rest, a in zip(strokes, rests, apart, strict=True):
-        if rest is not None and a is not None:
-            found += [
-                Slip(_row(motion, stroke, rest.first + at), size, 2 * sigma) for at, size in _steps(rest.left, a, least)
-            ]
-    return sorted(found, key=lambda slip: slip.row)
+    for stroke, result, rest, a in zip(strokes, results, rests, apart, strict=True):
+        if rest is None or a is None:
+            continue
+        turns = sum(len(r.curves) for r in results if r.direction == result.direction)
+        for at, size in _steps(rest.left, a, least):
+            row = _row(motion, stroke, rest.first + at)
+            found.append(Slip(row, size, 2 * sigma, float(motion.theta_m[row]), turns, result.direction))
+    return sorted((one for one in found if not any(_is_shadow(one, of) for of in found)), key=lambda slip: slip.row)
+
+
+def _is_shadow(one: Slip, of: Slip) -> bool:
+    """Whether it is what another slip leaves in the mean turn, by which all other turns seem to step back at its angle:
+    of six turns a fifth of it."""
+    if one.direction != of.direction or one.size * of.size >= 0 or of.turns < 2:
+        return False
+    apart = abs((one.angle - of.angle + TURN / 2) % TURN - TURN / 2)
+    return apart < NEAR and abs(one.size) < SHADOW * abs(of.size) / (of.turns - 1)
 
 
 @dataclass(frozen=True)

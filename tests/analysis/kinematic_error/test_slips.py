@@ -89,3 +89,17 @@ def test_an_eccentric_encoder_slips_nowhere(rpm: float) -> None:
 def test_a_slip_beside_an_eccentric_encoder_is_told() -> None:
     (check,) = [c for c in analyse(eccentric(600.0, 30.0)).checks if c.name == "slips"]
     assert "t = 31.0" in check.sentence
+
+
+@pytest.mark.parametrize("turns", [4, 6, 9])
+def test_of_few_turns_one_slip_is_no_three_though_the_mean_turn_has_a_part_of_it(turns: int) -> None:
+    t = np.arange(0.0, turns + 1.0, 1e-3)
+    theta_m = TURN * t
+    rng = np.random.default_rng(1)
+    error = 30.0 * np.cos(2 * theta_m) + 400.0 * (t > turns / 2 + 0.3) + 0.2 * rng.standard_normal(t.size)
+    columns = {"t": t, "theta_m": theta_m, "theta_l": theta_m / 50 - ARCSEC * error, "theta_ref": theta_m}
+    zeros = {name: np.zeros(t.size) for name in ("tau_m", "tau_l", "flags")}
+    found = analyse(MadeRun(columns | zeros, dict(slow_run(1).manifest)))
+    (check,) = [c for c in found.checks if c.name == "slips"]
+    assert check.sentence.count("arcsec at") == 1
+    assert f"t = {turns / 2 + 0.3:.1f}" in check.sentence
