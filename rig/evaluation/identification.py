@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rig.core.errors import DataError, Exit
 from rig.core.units import RPM
@@ -152,6 +152,13 @@ def made_with(runs: list[Run]) -> str:
     """When and with what."""
     from rig.process.software import software
 
-    said, started = software(), sorted(str(r.manifest.get("started_utc") or "") for r in runs)
-    days = f"{started[0][:10]} to {started[-1][:10]}"
-    return f"hdrig {said.get('version')} {said.get('commit') or ''}, runs of {days}"
+    said = software()
+    return f"hdrig {said.get('version')} {said.get('commit') or ''}, {_dated([r.manifest for r in runs])}"
+
+
+def _dated(manifests: Sequence[Mapping[str, Any]]) -> str:
+    """The first and the last day of runs that have one, and how many have none."""
+    days = sorted(started[:10] for m in manifests if (started := str(m.get("started_utc") or "")))
+    bare = len(manifests) - len(days)
+    undated = f"{bare} undated run{'' if bare == 1 else 's'}" if bare else ""
+    return ", ".join(filter(None, [f"runs of {days[0]} to {days[-1]}" if days else "", undated]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import time
 import uuid
@@ -33,6 +34,29 @@ def create_in(root: Path | str, procedure: str, manifest: Mapping[str, Any], ben
     first = _first_manifest(procedure, manifest)
     with told(NotReady, f"no run folder can be made in {root}"):
         return _create(Path(root), f"{_began(first):%m%d-%H%M}", procedure, first, bench_toml)
+
+
+def create_hidden(root: Path | str, procedure: str, manifest: Mapping[str, Any]) -> Path:
+    """As `create`, but no verb takes it for a run before `shown`: for what is one only when it is whole."""
+    first = _first_manifest(procedure, manifest)
+    began = _began(first)
+    with told(NotReady, f"no run folder can be made in {root}"):
+        return _create(Path(root) / f"{began:%Y-%m-%d}", f".{began:%H%M}", procedure, first, "")
+
+
+def shown(hidden: Path) -> Path:
+    """Give a folder made hidden its name as a run, safe on disk; returns it. Raises OSError."""
+    name = hidden.name.removeprefix(".")
+    while os.path.lexists(hidden.with_name(name)):
+        name = _another(name)
+    folder = hidden.rename(hidden.with_name(name))
+    sync_folder(folder.parent)
+    return folder
+
+
+def _another(name: str) -> str:
+    """The name of a second run in the same minute with the same four digits: one chance in 65 536."""
+    return f"{name[:-4]}{uuid.uuid4().hex[:4]}"
 
 
 def _create(parent: Path, start: str, procedure: str, first: Manifest, bench_toml: str) -> Path:
@@ -71,7 +95,7 @@ def _new_folder(parent: Path, start: str, procedure: str, manifest: Manifest) ->
         try:
             folder.mkdir()
             break
-        except FileExistsError:  # one chance in 65 536 for two runs in the same minute
-            folder = parent / f"{name[:-4]}{uuid.uuid4().hex[:4]}"
+        except FileExistsError:
+            folder = parent / _another(name)
     sync_folder(parent)
     return folder

@@ -28,12 +28,16 @@ def is_run(path: Path | str) -> bool:
 
 
 def runs_in(path: Path, unread: Unread = passed_by) -> list[Path]:
-    """`path` where it is a run folder, else every one below it, however deep, in the order of their names. Raises
-    PermissionError where that cannot be seen."""
+    """`path` where it is a run folder, else every one below it, however deep, in the order of their names; hidden
+    ones are passed by. Raises PermissionError where that cannot be seen."""
     if is_run(path):
         return [path]
-    below = os.walk(path, onerror=unread) if path.is_dir() else ()
-    return sorted(Path(at) for at, folders, files in below if NAME in files or NAME in folders)
+    found = []
+    for at, folders, files in os.walk(path, onerror=unread) if path.is_dir() else ():
+        if NAME in files or NAME in folders:
+            found.append(Path(at))
+        folders[:] = [name for name in folders if not name.startswith(".")]  # what is below those is not looked at
+    return sorted(found)
 
 
 def run_folders(root: str, depth: int = 3, unread: Unread = passed_by) -> Iterator[str]:

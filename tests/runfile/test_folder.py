@@ -15,7 +15,7 @@ import pytest
 from rig.core.errors import NotReady, RecorderError, UsageError
 from rig.runfile import manifest
 from rig.runfile.events import EventLog, mend_events, read_events
-from rig.runfile.folder import create
+from rig.runfile.folder import create, create_hidden, shown
 from rig.runfile.process import is_being_made, lives, started, this_process
 from tests.runfile.rows import manifest_of, new_folder
 
@@ -37,6 +37,18 @@ def test_a_serial_that_is_no_file_name_is_made_one(tmp_path: Path) -> None:
 def test_two_runs_of_one_minute_and_one_uid_get_two_folders(tmp_path: Path) -> None:
     about = {**GEAR, "started_utc": "2026-11-20T01:47:00+00:00", "uid": "3f9c"}
     assert len({create(tmp_path, "friction", about) for _ in range(5)}) == 5
+
+
+def test_a_run_made_hidden_gets_a_name_of_its_own_when_it_is_whole(tmp_path: Path) -> None:
+    about = {**GEAR, "started_utc": "2026-11-20T01:47:00+00:00", "uid": "3f9c"}
+    day = tmp_path / "2026-11-20"
+    hidden = [create_hidden(tmp_path, "friction", about) for _ in range(2)]
+    assert hidden[0] == day / ".0147-friction-SN0042-3f9c"
+    taken = create(tmp_path, "friction", about)
+    found = [shown(folder) for folder in hidden]
+    assert len({taken, *found}) == 3
+    assert all(folder.name.startswith("0147-friction-SN0042-") for folder in found)
+    assert sorted(day.iterdir()) == sorted([taken, *found])
 
 
 def test_the_manifest_is_there_first_and_says_running(tmp_path: Path) -> None:

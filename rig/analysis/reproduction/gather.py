@@ -67,6 +67,8 @@ def entries(campaign: Path, leave_out: Callable[[str], object] = lambda why: Non
     """
     found = []
     for path in sorted(campaign.rglob(manifests.NAME)):
+        if path.parent.name.startswith("."):  # an import that was killed before it was whole
+            continue
         try:
             found.append(entry(path.parent))
         except UsageError as error:

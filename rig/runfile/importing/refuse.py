@@ -12,7 +12,7 @@ import numpy.typing as npt
 from rig.core.errors import UsageError
 from rig.core.units import TURN
 from rig.runfile.importing.channel import NEEDED, ChannelMap
-from rig.runfile.importing.units import UNITS, known
+from rig.runfile.importing.units import UNITS
 from rig.runfile.importing.unwrap import wrapped_at
 
 Array = npt.NDArray[Any]
@@ -54,8 +54,6 @@ def not_numbers(raw: Array, column: str, file: str, decimal: str = ".") -> Usage
             hint = ""
             if decimal != "," and isinstance(cell, str) and _is_number(cell, ","):
                 hint = '; set [csv] decimal = ","'
-            elif row == 0 and isinstance(cell, str) and known(cell):
-                hint = ", a unit; set [csv] units_row = true"
             return UsageError(f"{file}: column '{column}' is not numbers: row {row + 1} holds {cell!r}{hint}")
     text = next(((row, cell) for row, cell in enumerate(cells, 1) if isinstance(cell, str)), None)
     if text is not None:  # each would be a number where a point divides

@@ -18,7 +18,7 @@ from rig.runfile import manifest as manifests
 from rig.runfile.archive import NAME as SAMPLES
 from rig.runfile.archive import open_parquet
 from rig.runfile.finalise import READ_ONLY, describe
-from rig.runfile.folder import create
+from rig.runfile.folder import create_hidden, shown
 from rig.runfile.importing.convert import Converted
 from rig.runfile.importing.mapping import Mapping
 
@@ -26,23 +26,25 @@ MAPPING_COPY = "import.toml"
 
 
 def write_run(run: Converted, mapping: Mapping, source: Path, root: Path, software: Dict[str, Any] | None) -> Path:
-    """Make the folder under `root`; returns it. Raises UsageError when it cannot be written; then nothing is left."""
+    """Make the folder under `root`; returns it. Raises UsageError when it cannot be written; then nothing is left. What
+    a kill leaves is hidden, and no run."""
     with manifests.told(UsageError, f"{source} cannot be read any more"):
         about = manifest_of(run, mapping, source, software)
-    folder = create(root, mapping.procedure, about)
+    folder = create_hidden(root, mapping.procedure, about)
     done = False
     try:
         with manifests.told(UsageError, f"cannot write the imported run to {folder}"):
             manifests.write_atomic(folder / MAPPING_COPY, mapping.text.encode())
             rows = _write_samples(folder, run)
             _close(folder, run, rows, source.name)
+            whole = shown(folder)
         done = True
     finally:
         if not done:
             shutil.rmtree(folder, ignore_errors=True)
             with contextlib.suppress(OSError):  # the day's, which has other runs in it or was made for this one
                 folder.parent.rmdir()
-    return folder
+    return whole
 
 
 def backend(run: Converted) -> str:

@@ -66,7 +66,9 @@ def test_an_export_read_again_is_as_simulated_as_the_run_was(
 def test_a_row_of_units_that_was_not_announced_is_told_with_the_key_to_set(foreign: Foreign, tmp_path: Path) -> None:
     file = exported(tmp_path / "first", "csv", "can")
     said = foreign.refused(file, MAPPING.replace("[csv]\nunits_row = true\n", ""))
-    assert "row 1 holds 's', a unit; set [csv] units_row = true" in said
+    assert "row 1 holds 's', a unit, in column 't'; set [csv] units_row = true" in said
+    without = MAPPING.replace("[csv]\nunits_row = true\n", "").replace('unit = "s"\n', "").replace('unit = "rad"\n', "")
+    assert foreign.refused(file, without) == said
 
 
 @pytest.mark.parametrize("deep", ["", "lab"])

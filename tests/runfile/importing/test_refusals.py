@@ -7,6 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rig.analysis.reproduction.gather import entries
+from rig.core.errors import DataError
+from rig.runfile.listing import run_folders, runs_in
+
 from .conftest import Foreign, with_column
 from .formats import MAPPING, ROWS, columns, truth
 
@@ -201,3 +205,22 @@ def test_ctrl_c_while_it_writes_leaves_nothing(foreign: Foreign, monkeypatch: py
         foreign.imported(foreign.file(), MAPPING.replace("SN7", "SN8"))
     assert [path for day in foreign.out.iterdir() for path in day.iterdir()] == kept
     assert [day.name for day in foreign.out.iterdir()] == [path.parent.name for path in kept]
+
+
+def test_what_a_kill_leaves_is_no_run_for_any_verb(foreign: Foreign, monkeypatch: pytest.MonkeyPatch) -> None:
+    from rig.runfile.importing import write
+
+    seen: list[object] = []
+    close, out = write._close, foreign.out
+
+    def looked_at(*given: Any) -> None:
+        close(*given)  # its manifest says completed by now
+        seen.append((runs_in(out), list(run_folders(str(out))), len(list(out.rglob("manifest.json")))))
+        with pytest.raises(DataError, match="holds no completed run"):
+            entries(out)
+
+    monkeypatch.setattr(write, "_close", looked_at)
+    run = foreign.imported(foreign.file())
+    assert seen == [([], [], 1)]
+    assert runs_in(out) == [run.path]
+    assert not run.path.name.startswith(".")

@@ -13,6 +13,7 @@ from rig.core.errors import UsageError
 from rig.runfile.importing.mapping import Dialect
 from rig.runfile.importing.readers.parquet import to_numpy
 from rig.runfile.importing.table import Table, locate
+from rig.runfile.importing.units import known
 from rig.runfile.manifest import SIMULATED
 
 CHUNK = 1 << 20  # bytes
@@ -27,6 +28,7 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
     check_preamble(path, names, wanted, dialect)
     check_delimiter(path, names, dialect)
     found = locate(names, wanted, path.name)
+    check_units_row(path, names, list(found.values()), dialect)
     lines = dialect.skip_rows + (0 if dialect.names else 1) + (1 if dialect.units_row else 0)
 
     import pyarrow.csv as pacsv
@@ -157,6 +159,22 @@ def header(path: Path, dialect: Dialect) -> tuple[list[str], list[str]]:
     if dialect.names and len(cells[0]) != len(names):
         raise UsageError(f"{path.name} has {len(cells[0])} columns, but csv.names gives {len(names)} names")
     return names, units
+
+
+def check_units_row(path: Path, names: Sequence[str], wanted: Sequence[str], dialect: Dialect) -> None:
+    """Raises UsageError when the first row of numbers holds a unit in a wanted column: a row of them nobody named."""
+    if dialect.units_row:
+        return
+    before = dialect.skip_rows + (0 if dialect.names else 1)
+    with path.open(encoding=dialect.encoding, newline="") as file:
+        first = [file.readline(LONGEST_LINE) for _ in range(before + 1)][-1]
+    with contextlib.suppress(csv.Error):  # what reads the whole file says more of such a line
+        cells = dict(zip(names, next(csv.reader([first], delimiter=dialect.delimiter), []), strict=False))
+        for name in wanted:
+            if known(cell := cells.get(name, "").strip()):
+                raise UsageError(
+                    f"{path.name}: row 1 holds {cell!r}, a unit, in column '{name}'; set [csv] units_row = true"
+                )
 
 
 def check_delimiter(path: Path, names: list[str], dialect: Dialect) -> None:
