@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import os
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line sets it, before numpy is imported
 
 import numpy as np
 import pytest
 from hypothesis import settings
+
+from tests.chromium import ARGUMENTS, SIZE
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, BrowserContext
 
 # shared machines stall: no deadline per example. In CI the same examples every time, elsewhere new ones.
 settings.register_profile("hdrig", deadline=None, derandomize=os.environ.get("CI") == "true")
@@ -25,6 +33,28 @@ def shared() -> Path:
     if not (folder / "cases").is_dir():
         pytest.skip(f"no reference campaigns at {folder} (set HDRIG_SHARED)")
     return folder
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """A real Chromium, one for all tests of a process. Where there is none they are left out, and say so."""
+    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if path is None:
+        pytest.skip("there is no Chromium on this machine: the page is not tried in a browser")
+    from playwright.sync_api import sync_playwright  # a fifth of a second, of which most tests have no need
+
+    with sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
+        yield found
+        found.close()
+
+
+@pytest.fixture
+def context(browser: Browser) -> Iterator[BrowserContext]:
+    """Pages of its own."""
+    made = browser.new_context(viewport=SIZE)
+    yield made
+    made.close()
 
 
 @pytest.fixture

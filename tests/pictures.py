@@ -16,7 +16,7 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
-from tests.console.browser.conftest import ARGUMENTS
+from tests.chromium import ARGUMENTS
 from tests.console.browser.rigs import HDRIG, QUIET, rig
 from tests.live.photograph import CHROMIUM, photograph
 

@@ -6,9 +6,7 @@ import pytest
 from playwright.sync_api import BrowserContext
 
 from rig.report import shell
-from tests.console.browser.conftest import browser, context
 
-__all__ = ["browser", "context"]
 pytestmark = pytest.mark.slow
 WORDS = "amplitude of the motor torque lost without current, 24 times a motor turn, in cos(24·θ_m + φ)"
 SHIFT = ["−0.9003 ± 0.0041 N·m·s/rad", "−0.9003 ± 0.0041 N·m·s/rad", "0.0 %", "0.0 ×"]

@@ -17,7 +17,7 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from drivers.unixbus import UnixBus
-from tests.console.browser.conftest import SIZE
+from tests.chromium import SIZE
 from tests.console.browser.look import in_state, text, until
 from tests.console.browser.rigs import rig
 from tests.console.browser.test_over_can import LOADED, STALLED

@@ -14,7 +14,8 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import Browser, Page
 
-from tests.console.browser.conftest import SIZE, Open
+from tests.chromium import SIZE
+from tests.console.browser.conftest import Open
 from tests.console.browser.look import enabled, in_state, text, until
 from tests.console.browser.rigs import Rig, rig
 from tests.scenario.test_over_the_wire import STALLED

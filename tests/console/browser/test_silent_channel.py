@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Browser, Page
 
-from tests.console.browser.conftest import SIZE
+from tests.chromium import SIZE
 from tests.console.browser.rigs import Rig, rig
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
