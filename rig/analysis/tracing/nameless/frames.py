@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
 from rig.analysis.tracing.nameless.law import BOTH_ANGLES, Amount, Nameless, sum_of, when
 from rig.core.units import ARCSEC
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
+
+SIZE: Final = 20.0  # N·m, for a column of the others' size
 
 
 class PulledAside(Nameless):
@@ -35,6 +37,3 @@ class PulledAside(Nameless):
     def amount(self, fit: Fit) -> Amount:
         """For each N·m."""
         return sum_of(fit, "each N·m of it shifts the angle by", 1 / (SIZE * ARCSEC), "arcsec")
-
-
-SIZE = 20.0  # N·m, for a column of the others' size
