@@ -12,12 +12,11 @@ from rig.analysis.identify.slow import SLOW
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
 from rig.analysis.kinematic_error.profile import Profile, phasors, u_phasors
 from rig.analysis.motion.strokes import find_strokes
-from rig.analysis.orders.align import Alignment, align
+from rig.analysis.orders.align import Alignment, other_zero
 from rig.core.errors import DataError
 from rig.core.quantiles import Z95
 from rig.core.units import DEG
 
-LIKE = 0.3  # of what the two errors differ by: a shift that leaves more of it is not what they differ by
 SEEN = 2  # turns at least
 
 
@@ -59,9 +58,4 @@ def _turned(error: Profile, reference: Profile) -> Alignment | None:
     k = min(error.terms, reference.terms)
     seen, expected = phasors(error, k), phasors(reference, k)
     u = np.hypot(u_phasors(error, k), u_phasors(reference, k))
-    where = align(seen, expected, u, k)
-    if where is None or where.common:
-        return None
-    turned = expected * np.exp(-1j * np.arange(1.0, k + 1) * where.shift)
-    gone = np.linalg.norm(seen - turned) < LIKE * np.linalg.norm(seen - expected)
-    return where if gone else None
+    return other_zero(seen, expected, u)

@@ -16,6 +16,7 @@ GRID = 1440  # trial shifts a turn, 0.25° apart: order 15 has 24° a period
 COMMON = 6.0 * DEG  # rad  other zeros differ by anything: in 29 cases of 30 by more than this
 NONE = 1.0 * DEG  # rad  and below this the shift is none: order 2 moves by 1/30
 SIGMA = 3.0  # as is one below so many of its own σ
+LIKE = 0.3  # of what two slow errors differ by: a shift that leaves more of it is not what they differ by
 MODEL = 0.15  # of what the model says an order gains: how far it is believed
 
 
@@ -85,3 +86,18 @@ def align(total: Complex, expected: Complex, u: Array, trusted: int) -> Alignmen
     if abs(shift) < COMMON:
         return Alignment(0.0, 0.0, shift, sigma)
     return Alignment(shift, sigma, shift, sigma)
+
+
+def other_zero(seen: Complex, expected: Complex, u: Array) -> Alignment | None:
+    """The shift between two slow errors, (k,) phasors of orders 1..k each, `u` 1 σ of their difference (k,), where it
+    makes them alike; None where there is none, or something else differs too."""
+    where = align(seen, expected, u, seen.size)
+    if where is None or where.common:
+        return None
+    gone = np.linalg.norm(seen - turned(expected, where.shift)) < LIKE * np.linalg.norm(seen - expected)
+    return where if gone else None
+
+
+def turned(phasors: Complex, shift: float) -> Complex:
+    """Phasors of orders 1..k, (k,), as an encoder reads them whose zero is `shift` rad of the motor away."""
+    return np.asarray(phasors * np.exp(-1j * np.arange(1.0, phasors.size + 1) * shift))

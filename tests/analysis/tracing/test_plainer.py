@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.fit.model import Solution, design, fit
+from rig.analysis.tracing.fit.model import design, fit
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.selection.plainer import plainer
@@ -93,9 +93,6 @@ def test_a_square_of_the_speed_is_no_friction_that_falls(law: Law, expected: str
     p = prepare(read_campaign(change(tmp_path, shared / "cases" / "open-1", law, EVEN)), ())
     runs = p.split.fitted
     wide = [(speed, 2.0, 0.0, law) for speed in (8.0, 14.0) for law in (0.0, 1.0)]
-    found = max((fit(design(p.eq, (Term(LIBRARY["stribeck_friction"], one),), runs)) for one in wide), key=_gain)
+    tried = [fit(design(p.eq, (Term(LIBRARY["stribeck_friction"], one),), runs)) for one in wide]
+    found = max(tried, key=lambda s: s.gain)
     assert [term.name for term in plainer(found, runs).design.terms] == [expected]
-
-
-def _gain(s: Solution) -> float:
-    return s.gain

@@ -43,11 +43,11 @@ def beside_a_late_reading(s: Solution) -> tuple[Solution, Array]:
         return s, nothing
     late = _beside(s)
     by = _with_each_second(late)
-    known = Z95 * float(np.sqrt(max(covariance(late)[INDEX[NAME], INDEX[NAME]], 0.0)))
-    moves = abs(by[INDEX["J_m"]] * late.value(NAME)) > HARDLY * abs(late.value("J_m"))
-    if moves and is_late(late):
-        return late, np.outer(by, by) * (AS_GOOD * late.value(NAME) / Z95) ** 2
-    half = min(known + abs(late.value(NAME)), HALF_A_CYCLE)
+    size, half = abs(late.value(NAME)), Z95 * float(np.sqrt(max(covariance(late)[INDEX[NAME], INDEX[NAME]], 0.0)))
+    moves = abs(by[INDEX["J_m"]]) * size > HARDLY * abs(late.value("J_m"))
+    if moves and max(LEAST, SURE * half) < size < MOST:
+        return late, np.outer(by, by) * (AS_GOOD * size / Z95) ** 2
+    half = min(half + size, HALF_A_CYCLE)
     by[INDEX[NAME]] = 0.0
     return s, np.outer(by, by) * (half / Z95) ** 2
 

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from rig.analysis.findings.collected import pm
-from rig.analysis.orders.align import Complex, align
+from rig.analysis.orders.align import Complex, other_zero, turned
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.told_once import Said
 from rig.core.quantiles import Z95
@@ -23,7 +23,6 @@ ORDERS: Final = 8
 SLOW: Final = 25.0 * RPM  # rad/s
 SEEN: Final = 2.0  # turns at least
 ROWS: Final = 6000  # of a run: an order needs no more, and they are nearly independent
-LIKE: Final = 0.3  # of what two errors differ by: a shift that leaves more of it is not what they differ by
 OTHERS: Final = 0.5  # of what they differ by in all orders but one: any difference of one order alone is a shift of it
 
 
@@ -74,12 +73,10 @@ def _waves(run: Recording) -> Waves | None:
 
 def _apart(one: Waves, reference: Waves) -> str:
     """By how far the zero of `one` is from the other's, in words; "" where it is not, or something else differs too."""
-    where = align(one.of, reference.of, np.hypot(one.u, reference.u), ORDERS)
-    if where is None or where.common:
+    where = other_zero(one.of, reference.of, np.hypot(one.u, reference.u))
+    if where is None:
         return ""
-    turned = reference.of * np.exp(-1j * np.arange(1.0, ORDERS + 1) * where.shift)
-    before, after = np.abs(one.of - reference.of), np.abs(one.of - turned)
+    before, after = np.abs(one.of - reference.of), np.abs(one.of - turned(reference.of, where.shift))
     rest = np.arange(ORDERS) != int(np.argmax(before))
-    gone = np.linalg.norm(after) < LIKE * np.linalg.norm(before)
-    gone &= np.linalg.norm(after[rest]) < OTHERS * np.linalg.norm(before[rest])
+    gone = np.linalg.norm(after[rest]) < OTHERS * np.linalg.norm(before[rest])
     return pm(where.fitted / DEG, Z95 * where.u_fitted / DEG, "degrees") if gone else ""
