@@ -49,6 +49,8 @@ REFERENCES: dict[str, str] = {
     "Mechanism and Machine Theory 155 (2021) 104122",
     "taghirad1999": "H. D. Taghirad, P. R. Bélanger, Intelligent built-in torque sensor for harmonic drive systems, "
     "IEEE Trans. Instrumentation and Measurement 48 (1999) 1201-1207",
+    "heidenhain": "Dr. Johannes Heidenhain GmbH, Modular Angle Encoders, catalogue: a scale that runs beside the "
+    "shaft's centre, by its eccentricity or by the bearing's radial play",
     "harmonicdrive": "Harmonic Drive SE / LLC, CSF and CSG component sets, engineering data of the catalogue",
     "astrom2006": "K. J. Åström, T. Hägglund, Advanced PID Control, ISA (2006)",
     "iso11898": "ISO 11898-1, Road vehicles, Controller area network (CAN), Part 1: Data link layer",

@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.core.errors import UsageError
+from rig.core.errors import DataError, UsageError
 
 Columns = dict[str, Any]
 
@@ -70,6 +70,13 @@ def test_what_cannot_be_traced_is_refused_with_the_reason(
     with pytest.raises(UsageError, match=r"none of its 2 runs can be used: run-0 was left out: .*") as caught:
         read_campaign(campaign(tmp_path, change))
     assert said in str(caught.value)
+
+
+def test_a_campaign_of_damaged_files_alone_is_damaged(tmp_path: Path) -> None:
+    for samples in campaign(tmp_path, lambda c: c).glob("*/samples.parquet"):
+        samples.write_bytes(samples.read_bytes()[:-1000])
+    with pytest.raises(DataError, match="none of its 2 runs can be used"):
+        read_campaign(tmp_path)
 
 
 def test_one_hostile_run_among_good_ones_is_left_out_by_name(tmp_path: Path) -> None:

@@ -21,15 +21,17 @@ from rig.runfile.finalise import READ_ONLY, describe
 from rig.runfile.folder import create_hidden, shown
 from rig.runfile.importing.convert import Converted
 from rig.runfile.importing.mapping import Mapping
+from rig.runfile.importing.sweep import sweep
 
 MAPPING_COPY = "import.toml"
 
 
 def write_run(run: Converted, mapping: Mapping, source: Path, root: Path, software: Dict[str, Any] | None) -> Path:
     """Make the folder under `root`; returns it. Raises UsageError when it cannot be written; then nothing is left. What
-    a kill leaves is hidden, and no run."""
+    a kill leaves is hidden, no run, and swept by the next import there."""
     with manifests.told(UsageError, f"{source} cannot be read any more"):
         about = manifest_of(run, mapping, source, software)
+    sweep(root)
     folder = create_hidden(root, mapping.procedure, about)
     done = False
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import platform
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ import pytest
 from rig.analysis.reproduction.gather import entries
 from rig.core.errors import DataError
 from rig.runfile.listing import run_folders, runs_in
+from rig.runfile.process import this_process
 
 from .conftest import Foreign, with_column
 from .formats import MAPPING, ROWS, columns, truth
@@ -224,3 +227,22 @@ def test_what_a_kill_leaves_is_no_run_for_any_verb(foreign: Foreign, monkeypatch
     assert seen == [([], [], 1)]
     assert runs_in(out) == [run.path]
     assert not run.path.name.startswith(".")
+
+
+def test_the_next_import_sweeps_what_a_killed_one_left_and_nothing_else(foreign: Foreign) -> None:
+    kept = foreign.imported(foreign.file()).path
+    about = json.loads((kept / "manifest.json").read_text())
+    day, here = kept.parent, platform.node()
+    gone = {"pid": 2**22 - 1, "started": 1, "host": here}
+    left = {
+        ".0147-killed": about | {"process": gone},
+        ".0147-alive": about | {"process": this_process()},
+        ".0147-elsewhere": about | {"process": gone | {"host": "another"}},
+        ".0147-no-import": {k: v for k, v in about.items() if k != "import"} | {"process": gone},
+    }
+    for name, manifest in left.items():
+        (day / name).mkdir()
+        (day / name / "manifest.json").write_text(json.dumps(manifest))
+    (day / ".0147-nothing").mkdir()
+    again = foreign.imported(foreign.file(), MAPPING.replace("SN7", "SN8")).path
+    assert {path.name for path in day.iterdir()} == {*left, ".0147-nothing", kept.name, again.name} - {".0147-killed"}

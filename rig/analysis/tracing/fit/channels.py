@@ -208,6 +208,13 @@ def shared_columns(run: Recording, channel: str, at: tuple[int, ...]) -> npt.NDA
     return np.array([BASELINE[i] not in rates for i in at], dtype=np.bool_)
 
 
+def later_by_a_second(run: Recording, channel: str) -> list[Array]:
+    """What a motor torque read a second late has less than one read in time, −τ̇_m, to the first order: of each piece
+    (n,), as smooth as `channel`."""
+    f = run.smoother.of(channel)
+    return [-f(piece.tau_m, 1) for piece in run.pieces]
+
+
 def _derived(run: Recording, channel: str) -> bool:
     """Whether this channel stands in for an angle that was not measured."""
     needs = {"A": frozenset[str](), "L": {"theta_l"}}.get(channel, {"theta_m", "tau_l"})
@@ -224,7 +231,8 @@ def unmasked(run: Recording, channel: str) -> tuple[Array, Array, tuple[int, ...
     if run.look.gain and channel in "MR" and "tau_l" in run.has:
         made = [(y, z | {"gain": f(p.tau_l) / p.ratio}) for (y, z), p in zip(made, run.pieces, strict=True)]
     if run.look.late_motor and channel in "MR" and "t" in run.has:
-        made = [(y, z | {"lag_m": -f(p.tau_m, 1)}) for (y, z), p in zip(made, run.pieces, strict=True)]
+        late = later_by_a_second(run, channel)
+        made = [(y, z | {"lag_m": x}) for (y, z), x in zip(made, late, strict=True)]
     if run.added and channel == "L":
         made = [(y - run.added * f(p.theta_l, 2), z) for (y, z), p in zip(made, run.pieces, strict=True)]
     if run.load_unread and channel in "AM":

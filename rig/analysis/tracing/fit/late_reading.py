@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import INDEX, joined
+from rig.analysis.tracing.fit.channels import INDEX, joined, later_by_a_second
 from rig.analysis.tracing.fit.covariance import covariance, is_sure
 from rig.analysis.tracing.fit.equations import Bare, Key
 from rig.analysis.tracing.fit.model import UNSEEN, Design, Part, Solution, solve
@@ -87,6 +87,5 @@ def _beside(s: Solution) -> Solution:
 def _column(d: Design, key: Key) -> Array:
     """−τ̇_m of a block, pieces joined, without what the run has to itself, (n, 1)."""
     run, rows = d.eq.runs[key[0]], d.eq.rows[key]
-    f = run.smoother.of(key[1])
-    rate = joined([f(piece.tau_m, 1) for piece in run.pieces])[rows.keep]
-    return d.eq.bare(key, -np.nan_to_num(rate))[:, None]
+    late = joined(later_by_a_second(run, key[1]))[rows.keep]
+    return d.eq.bare(key, np.nan_to_num(late))[:, None]

@@ -15,14 +15,14 @@ SIZE: Final = 20.0  # N·m, for a column of the others' size
 
 
 class PulledAside(Nameless):
-    """What hangs on the output pulls its shaft aside, and the load encoder reads c·τ_ext too much      [tuttle1992]
+    """What hangs on the output pulls its shaft aside, and the load encoder reads c·τ_ext too much      [heidenhain]
 
     To the wind-up that is a compliance, or one that comes late; a locked output under the same torque shows none of it.
     """
 
     name: ClassVar[str] = "pulled_aside"
     in_short: ClassVar[str] = "a weight shifts the load angle, and its torque in a lock test does not"
-    source: ClassVar[str] = "tuttle1992"
+    source: ClassVar[str] = "heidenhain"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES
     WEIGHTS: ClassVar[int] = 3  # with fewer, and nothing, it is any zero that another run has
 

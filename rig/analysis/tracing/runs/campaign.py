@@ -31,7 +31,7 @@ from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refus
 from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.runs.weights import other_weights, refuse_odd_torques
 from rig.analysis.tracing.workers import WORKERS
-from rig.core.errors import HdrigError, UsageError
+from rig.core.errors import DataError, HdrigError, UsageError
 from rig.model.effect import Moved
 from rig.runfile.copies import once
 from rig.runfile.doubt import changed
@@ -83,7 +83,7 @@ def folders_of_runs(folder: Path) -> list[Path]:
 
 def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     """All run folders directly in `folder`, each looked at as said. Raises UsageError when it holds no run with an
-    angle."""
+    angle, DataError where that is because all are damaged."""
     places, name = folders_of_runs(folder), folder.resolve().name  # that of `.` is empty
     opened, out = _open(places)
     opened = once(opened, lambda copy, why: out.append(left_out(copy.name, why)))
@@ -110,7 +110,8 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     said = told_once([*(Said(r.name, "", note) for r in runs for note in r.notes), *out, *other_zeros(runs)])
     notes = [*([part] if part else []), *unfit, *mixed(opened, discs), *said]
     if not runs:
-        raise UsageError(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
+        kind = DataError if all(said.damaged for said in out if said.became) else UsageError
+        raise kind(f"{folder}: none of its {len(places)} runs can be used: {' '.join(notes)[:300]}")
     runs = _same_sensors(sorted(runs, key=lambda r: (r.start, r.name)))
     if no_spring(runs):
         runs = [replace(run, look=replace(run.look, rigid=True)) for run in runs]
@@ -157,7 +158,8 @@ def _open(places: list[Path]) -> tuple[list[Run], list[Said]]:
         try:
             opened.append(Run.open(place))
         except HdrigError as error:
-            out.append(left_out(place.name, str(error).replace(f"{place}/", "").replace(str(place), "it")))
+            why = str(error).replace(f"{place}/", "").replace(str(place), "it")
+            out.append(left_out(place.name, why, isinstance(error, DataError)))
     return opened, out
 
 
@@ -200,7 +202,7 @@ def _read(run: Run, start: float, hz: float | None = None, look: Look = FIRST) -
     try:
         return record(run, start, hz, look)
     except (HdrigError, ValueError) as error:
-        return left_out(run.name, error)
+        return left_out(run.name, error, isinstance(error, DataError))
 
 
 def _unfit(made: Recording) -> str:

@@ -12,20 +12,21 @@ NUMBER: Final = re.compile(r"-?\d[\d.]*(e[-+]?\d+)?")
 
 
 class Said(NamedTuple):
-    """Of one run: its name, what became of it ("" or " was left out"), and the reason."""
+    """Of one run: its name, what became of it ("" or " was left out"), the reason, and whether its file is damaged."""
 
     run: str
     became: str
     reason: str
+    damaged: bool = False
 
     def words(self) -> str:
         """As a sentence."""
         return f"{self.run}{self.became}: {self.reason.rstrip('.')}."
 
 
-def left_out(run: str, reason: object) -> Said:
+def left_out(run: str, reason: object, damaged: bool = False) -> Said:
     """Why a run was left out."""
-    return Said(run, " was left out", str(reason))
+    return Said(run, " was left out", str(reason), damaged)
 
 
 def told_once(said: Sequence[Said]) -> list[str]:
