@@ -64,12 +64,17 @@ def test_its_file_its_name_and_its_source_agree(effect: Effect):
     assert len(effect.shape_names) == len(effect.loose)
 
 
+def all_shapes(effect: Effect) -> list[tuple[float, ...]]:
+    """Those a search tries, and those that are tried beside another term of it."""
+    return [*effect.shapes(REACH), *effect.shapes_beside(REACH)]
+
+
 @pytest.mark.slow
 @every_effect
 def test_columns_are_finite_and_as_many_at_every_port_for_every_shape(effect: Effect):
     shapes = effect.shapes(REACH)
     assert shapes, "a complete campaign can show it"
-    for shape in shapes:
+    for shape in all_shapes(effect):
         assert len(shape) == len(effect.shape_names)
         ports = effect.columns(motion(), shape)
         assert len({c.shape for c in ports.values()}) == 1, shape
@@ -106,7 +111,7 @@ def test_parameters_have_a_name_a_unit_and_an_interval_around_the_value(effect: 
 
 @every_effect
 def test_what_an_effect_softens_the_gear_by_has_the_gradient_it_says(effect: Effect):
-    for shape in dict.fromkeys((x[0], x) if x else ((), ()) for x in effect.shapes(REACH)):
+    for shape in dict.fromkeys((x[0], x) if x else ((), ()) for x in all_shapes(effect)):
         at = shape[1]
         k = next(iter(effect.columns(motion(n=50), at).values())).shape[1]
         scale = np.resize([0.05, 4e-6], k)  # as of an inertia and its 1/ω²
@@ -120,7 +125,7 @@ def test_what_an_effect_softens_the_gear_by_has_the_gradient_it_says(effect: Eff
 
 @every_effect
 def test_what_counts_twice_in_the_damping_is_a_law_in_the_spring(effect: Effect):
-    for shape in effect.shapes(REACH):
+    for shape in all_shapes(effect):
         share = effect.drags(shape)
         assert 0.0 <= share <= 1.0
         assert not share or (effect.in_the_spring and Port.WIND_UP in effect.columns(motion(n=50), shape))
@@ -130,7 +135,7 @@ def named(effect: Effect) -> set[str]:
     """What the parameters of `effect` are called, whatever its shape, and what the detectors of each run's own say."""
     own = {"external_vibration": shaken(), "missed_counts": lost(), "channel_time_skew": late()}
     names = own.get(effect.name, set())
-    for shape in effect.shapes(REACH):
+    for shape in all_shapes(effect):
         k = next(iter(effect.columns(motion(n=50), shape).values())).shape[1]
         size = k + len(shape)
         fit = Fit(np.linspace(0.01, 0.02, k), shape, np.eye(size) * 1e-6, KNOWN, N)

@@ -16,6 +16,7 @@ from rig.analysis.tracing.fit.search import Found, relawed, settled, still
 from rig.analysis.tracing.fit.some import search_some, some
 from rig.analysis.tracing.floor.noise import measure, quieter
 from rig.analysis.tracing.floor.own import find
+from rig.analysis.tracing.floor.steps import LOST
 from rig.analysis.tracing.floor.vibration import VIBRATION
 from rig.analysis.tracing.prepared import Prepared, built
 from rig.analysis.tracing.selection.certain import is_calm, is_calm_there, is_certain
@@ -91,7 +92,7 @@ def _selected(
     give_back()
     covered = tried.covered
     selected = select(replace(again, held_out=replace(again.held_out, calm=calm)), found, runs, covered)
-    selected = _shaken_as_it_stands(selected, found, runs, covered)
+    selected = _own_as_it_stands(selected, found, runs, covered)
     if alone := _at_the_floor_alone(p, again, selected, start, covered, calm):
         return alone, Found(start, found.ranking), covered
     if warmer := _warmer(selected, found, runs, covered):
@@ -146,14 +147,16 @@ def _at_the_floor_alone(
     return None if alone.loud else alone
 
 
-def _shaken_as_it_stands(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
-    """Selected again where a line was taken for a vibration of the load beside effects that do not stand: beside what
-    does it may be one sensor's own."""
-    stands = selected.solution.design.terms
-    if VIBRATION.name not in selected.p.own.made or len(stands) == len(found.solution.design.terms):
+def _own_as_it_stands(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
+    """Selected again where what runs have to themselves was taken for another thing beside effects that do not stand: a
+    line for a vibration of the load, which beside what stands may be one sensor's own; or a jump for counts that are
+    lost on and on, which are looked for by no step."""
+    stands, tried = selected.solution.design.terms, found.solution.design.terms
+    on_and_on = LOST.name in {term.name for term in tried} - {term.name for term in stands}
+    if len(stands) == len(tried) or not (VIBRATION.name in selected.p.own.made or on_and_on):
         return selected
     again, s = beside(selected.p, selected.solution, covered)
-    if VIBRATION.name in again.own.made:
+    if again.own.made.keys() == selected.p.own.made.keys() and again.own.jumped == selected.p.own.jumped:
         return selected
     again = replace(again, held_out=replace(again.held_out, calm=selected.p.held_out.calm))
     return select(again, replace(found, solution=s), runs, covered)

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from rig.model.effects.channel_time_skew import FILTERED
+
 RATE: Final = 250.0  # Hz, faster runs are brought down to about this first: 15 orders at 400 rpm end at 100 Hz
 BANDWIDTH: Final = 36.0  # Hz, standard deviation of the low-pass: J_m·ω̇ of a 16-bit encoder is then 1 mN·m of noise
 # times both, in a look at what rings above that; but for the motor's torque, whose J_m·ω̇ would be 6 mN·m of noise
@@ -20,7 +22,7 @@ MESH: Final = 3e-3  # N·m·s/rad, how large B_ml may be beside the torque senso
 SECOND: Final = 1e-6  # s², (B_sp/K)²: a damping ratio of 5 % at 16 Hz, the second order of the spring's damping
 LATEST: Final = 1e-3  # s, how late at most; and no sensor is early
 HEAVIER: Final = 0.25  # kg·m², by how much a load nobody stated is likely to differ from what it was taken for
-LAG: Final = 3e-4  # s, how late a torque sensor's own low-pass may make it: 530 Hz, first order
+LAG: Final = FILTERED  # s, how late a torque sensor's own low-pass may make it
 ZERO: Final = 0.01  # N·m, how far a torque sensor's zero wanders between runs where no repeats show it
 
 GAIN: Final = 5e-4  # of the torque: a torque sensor of accuracy class 0.05, where no repeats show it

@@ -44,6 +44,10 @@ class Effect(ABC):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """The shapes worth trying on such a campaign; `((),)` when the effect has none; () when it cannot show."""
 
+    def shapes_beside(self, reach: Reach) -> tuple[Shape, ...]:
+        """Shapes that mean something beside another term of the effect alone; no search tries them by themselves."""
+        return ()
+
     @abstractmethod
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Columns (n, k) at each port the effect acts on, one set of k coefficients for all of them."""

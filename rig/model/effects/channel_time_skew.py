@@ -15,6 +15,7 @@ STEADY, ON_AND_ON, EACH_RUN, ALONG_RUN = 0.0, 1.0, 2.0, 3.0  # of the third: whe
 AVERAGED = 4.0  # of the third: late as what is the mean of a while
 SOME, WIDE = 0.1, 1.5  # share of the rows that go back; fastest over slowest
 SOON = 1e-4  # s: a shift by less is its rate
+FILTERED: Final = 3e-4  # s, how late a torque sensor's own low-pass may make it: 530 Hz, first order
 KNOTS = np.linspace(0.0, 1.0, 13)  # of the curve along a run, shares of it
 
 
@@ -132,8 +133,12 @@ class ChannelTimeSkew(Effect):
         return tuple(parameter(f"{what}_{name}", float(x[: at.size] @ at), fit.half_width(x), "s") for what, x in of)
 
     def plausible(self, fit: Fit) -> bool:
-        """What is the mean of a while is late by about as much as it is blunt."""
-        if fit.shape[2] != AVERAGED:
+        """What is the mean of a while is late by about as much as it is blunt. A torque that is late by no more than
+        gauges' own low-pass makes it is in the baseline, and lacks nothing."""
+        side, _, drifts = fit.shape
+        if side == TORQUE and drifts == STEADY:
+            return not 0.0 < fit.coefficients[0] < FILTERED
+        if drifts != AVERAGED:
             return True
         delay, half_square = fit.coefficients
         return bool(0.0 < 2.0 * half_square < self.BLUNT * delay**2 and delay > 0.0)

@@ -15,6 +15,7 @@ from rig.model.waves import powers
 
 TORQUE, SIZE = 0.0, 1.0  # of the first shape parameter: what is lagged
 EACH = 2.0  # added to it where the large orders shrink each by its own share
+SIDED = 4.0  # in its place: what more is left under positive torque than under negative
 UNTOLD = 1e-3  # of a lag, half its interval: nothing that is told is told so well
 NONE = 1e-12  # rad: a wave so small is none
 ORDERS = (1, 2, 4)  # the large ones of a strain-wave gear, two lobes and what they lack; the others go together
@@ -32,6 +33,9 @@ class LoadDependentKinematicError(Effect):
     are fitted. As shares of what stays they would have no phase where little stays. The rest of them shrinks together,
     and may turn together, as a profile does that shifts by an angle under load.
 
+    Flanks that were not cut alike shrink it by another share one way than the other: θ̃_p gains d·sgn T̄·(1 − exp(…))
+    of itself beside the rest (SIDED). A spring that changes with the angle draws that too, with more numbers.
+
     δ is 1 in Fig. 9, as far as five loads tell. Teeth that come into contact one by one spread the fall over decades of
     torque, clearances of one size end it at one: 0.6 and 2 come within a tenth of a power law and of a straight line.
     """
@@ -43,6 +47,7 @@ class LoadDependentKinematicError(Effect):
         "A_inf_order_{n}": "A_∞ of order {n}, the share of it that stays",
         "T_c": "torque through the gear over which the rest goes away",
         "lag": "time constant by which the kinematic error follows the torque",
+        "uneven": "d, by what share more of it stays under positive torque, and less under negative",
     }
     source: ClassVar[str] = "ghorbel2001, Fig. 9"
     shape_names: ClassVar[tuple[str, ...]] = ("of", "T_c", "lag", "delta")
@@ -62,6 +67,10 @@ class LoadDependentKinematicError(Effect):
         other = [(of, c, delta) for of in (TORQUE, EACH) for delta in (self.SPREAD, self.SUDDEN) for c in self.LATER]
         return tuple((of, c, self.LAG, delta) for of, c, delta in (*whole, *orders, *other) if c < 1.5 * reach.torque)
 
+    def shapes_beside(self, reach: Reach) -> tuple[Shape, ...]:
+        """What is uneven about it, over torques as far apart."""
+        return tuple((SIDED, c, self.LAG, 1.0) for c in self.TORQUES if c < 1.5 * reach.torque)
+
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """The fitted series times the decay, and its lever; by orders where each has its own share."""
         of, t_c, lag, delta = shape
@@ -71,9 +80,12 @@ class LoadDependentKinematicError(Effect):
             torque = lagged(whole.torque, whole.gear.damped_for, whole.dt)
             return (lagged(np.abs(torque) if of % EACH == SIZE else torque, lag, whole.dt),)
 
-        decay = np.exp(-((np.abs(signals.states(late, of % EACH, lag)[0]) / t_c) ** delta))[:, None]
+        torque = signals.states(late, of % EACH, lag)[0]
+        decay = np.exp(-((np.abs(torque) / t_c) ** delta))[:, None]
         values, slopes = signals.series_value[:, None], signals.series_slope[:, None]
-        if of >= EACH:
+        if of == SIDED:
+            decay = np.sign(torque)[:, None] * (1.0 - decay)
+        elif of >= EACH:
             values, slopes = signals.once(self.name, lambda: _by_orders(signals, values, slopes))
         return {Port.KINEMATIC_ERROR: values * decay, Port.LEVER: slopes * decay}
 
@@ -81,6 +93,8 @@ class LoadDependentKinematicError(Effect):
         """A_∞, the share that stays of the largest order and, by orders, of each; T_c; the lag."""
         k = fit.coefficients.size
         unit = np.eye(k + len(fit.shape))
+        if fit.shape[0] == SIDED:
+            return (parameter("uneven", fit.coefficients[0], fit.half_width(unit[0]), "1"),)
         shares = [_stays_of(fit, i) for i in range(len(ORDERS))] if k > 1 else [_stays(fit)]
         largest = _largest(fit)
         each = [_left(fit, f"A_inf_order_{n}", shares[i]) for i, n in enumerate(ORDERS[: len(shares)]) if i != largest]
@@ -109,6 +123,8 @@ class LoadDependentKinematicError(Effect):
     def unloaded(self, order: int, known: Known, shape: Shape) -> Array:
         """What goes away under load: the baseline's series has what stays."""
         wave = np.array(_wave(known.kinematic_error, order))
+        if shape[0] == SIDED:
+            return np.zeros((2, 1))
         if shape[0] < EACH:
             return wave[:, None]
         made = np.zeros((2, 2 * len(ORDERS) + 2))
@@ -122,13 +138,15 @@ class LoadDependentKinematicError(Effect):
 
     def plausible(self, fit: Fit) -> bool:
         """It shrinks; as a whole it does not change its sign."""
+        if fit.shape[0] == SIDED:
+            return bool(abs(fit.coefficients[0]) < 1.0)
         share, _ = _stays_of(fit, _largest(fit)) if fit.coefficients.size > 1 else _stays(fit)
         return bool(0.0 <= share < 1.0)
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Of the law (chosen), T_c, the lag, and δ (chosen)."""
         torques = (0.3 * self.TORQUES[0], 2.0 * self.TORQUES[-1])
-        return (TORQUE, SIZE + EACH), torques, self.LAGS, (self.SPREAD, self.SUDDEN)
+        return (TORQUE, SIDED), torques, self.LAGS, (self.SPREAD, self.SUDDEN)
 
 
 def _by_orders(signals: Signals, values: Array, slopes: Array) -> tuple[Array, Array]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar, Final
 
 import numpy as np
@@ -65,6 +65,12 @@ class MissedCounts(Effect):
             return {Port.READS_THETA_L: -self._way(signals, law, at)[:, None]}
         after = np.clip((signals.t - at) / signals.dt + 0.5, 0.0, 1.0)[:, None]
         return {Port.READS_THETA_M if law == MOTOR else Port.READS_THETA_L: after}
+
+    def plausible_together(self, fits: Sequence[Fit]) -> bool:
+        """What is lost above one speed does not come back above another: such a pair is a reading that runs away
+        between the two, as a zero does that is followed while the motor creeps."""
+        lost = [float(f.coefficients[0]) for f in fits if f.shape[0] == TURNED]
+        return not lost or abs(sum(lost)) > max(map(abs, lost)) / 2
 
     def _way(self, signals: Signals, law: float, above: float) -> Array:
         """Output turns since the run began, (n,), as the motor tells them."""

@@ -40,6 +40,8 @@ class PreslidingFriction(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("side", "x_0", "law")
     loose: ClassVar[tuple[bool, ...]] = (False, True, False)
     usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"law": (BRISTLE,)})
+    # two ways near each other share out what is known of both together
+    adds: ClassVar[frozenset[str]] = frozenset({"tau_presliding", "tau_presliding_l"})
     WAYS: Final = (0.003, 0.01, 0.03, 0.1, 0.3, 1.0)  # rad of the motor; less than a sample of the slow run at first
     SPREAD: Final = (0.2, 0.6, 1.8, 5.4)  # of x_0: after which ways the elements slip
     DECADES: Final = (0.3, 1.0, 4.0, 16.0)  # of x_0: ways of several bristles

@@ -31,6 +31,7 @@ from rig.model.effects.hysteretic_stiffness import HystereticStiffness
 from rig.model.effects.load_dependent_friction import LoadDependentFriction
 from rig.model.effects.load_dependent_kinematic_error import EACH, ORDERS, TORQUE, LoadDependentKinematicError
 from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
+from rig.model.effects.missed_counts import TURNED, MissedCounts
 from rig.model.effects.nonlinear_stiffness import BELOW, CUBIC, EXPONENTIAL, KNEE, NonlinearStiffness
 from rig.model.effects.output_once_per_rev import OutputOncePerRev
 from rig.model.effects.position_dependent_friction import PositionDependentFriction
@@ -399,6 +400,21 @@ def test_a_torque_that_is_the_mean_of_a_while_is_late_and_blunt() -> None:
             assert effect.plausible(fit)
             assert not effect.plausible(dataclasses.replace(fit, coefficients=found * np.array([1.0, -1.0])))
             assert not effect.plausible(dataclasses.replace(fit, coefficients=found * np.array([0.2, 1.0])))
+
+
+@pytest.mark.parametrize(("late", "is_one"), [(1.3e-4, False), (2.9e-4, False), (5e-4, True), (-2e-4, True)])
+def test_a_torque_as_late_as_its_own_low_pass_makes_it_is_no_skew(late: float, is_one: bool) -> None:
+    fit = Fit(np.array([late]), (TORQUE_LATE, 0.0, 0.0), np.zeros((4, 4)), KNOWN, N)
+    assert ChannelTimeSkew().plausible(fit) == is_one
+    assert ChannelTimeSkew().plausible(dataclasses.replace(fit, shape=(LOAD_LATE, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize(("sizes", "are_lost"), [((1.7e-3, -1.69e-3), False), ((1e-4, 2e-4), True), ((3e-4,), True)])
+def test_counts_that_come_back_at_another_speed_are_none_that_were_lost(
+    sizes: tuple[float, ...], are_lost: bool
+) -> None:
+    fits = [Fit(np.array([x]), (TURNED, 0.5 + i), np.zeros((3, 3)), KNOWN, N) for i, x in enumerate(sizes)]
+    assert MissedCounts().plausible_together(fits) == are_lost
 
 
 @pytest.mark.parametrize("late", [5e-3, 0.02, -0.02])

@@ -215,6 +215,19 @@ def test_a_weight_that_shifts_the_load_angle_is_neither_a_spring_nor_a_creep(sha
 
 
 @pytest.mark.slow
+def test_a_load_angle_to_another_scale_loses_no_counts_and_comes_late_at_no_speed(shared: Path, tmp_path: Path) -> None:
+    def rounded(c: Columns, began: float) -> Columns:
+        return {"theta_l": c["theta_l"] * (1 + 9e-6)}
+
+    found = spiked(tmp_path, shared / "cases" / "open-1", rounded)
+    told = CONFOUNDERS["other_scale"]
+    assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
+    assert (found.verdict.coordinate, found.verdict.sentence) == (told.coordinate, told.sentence)
+    (much,) = [match for law in found.law if (match := re.search(r"too much by (\S+) ± (\S+) arcsec", law))]
+    assert float(much[1]) == pytest.approx(9e-6 * 2 * np.pi / ARCSEC, abs=max(0.2, 1.5 * float(much[2])))
+
+
+@pytest.mark.slow
 def test_a_torque_sensor_that_is_thrown_outward_goes_with_the_speed_and_drags_no_motor(
     shared: Path, tmp_path: Path
 ) -> None:

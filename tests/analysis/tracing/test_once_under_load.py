@@ -18,6 +18,7 @@ JUMP = 1.3e-4  # rad
 def eq(monkeypatch: pytest.MonkeyPatch) -> Any:
     """A run without a weight, one that drives 40 N·m, and one whose torque nobody measured; 10 ms between rows."""
     monkeypatch.setattr(asked, "clock", lambda eq, key: 900.0 + 0.01 * np.arange(1000))
+    monkeypatch.setattr(asked, "made_by", lambda eq, run, row, side: {})  # nobody read a torque
     torques = {"slow_ke_1": 0.4, "load_40nm_1": 40.0, "unread": 0.0}
     return SimpleNamespace(runs=[SimpleNamespace(name=name, mean_torque=torque) for name, torque in torques.items()])
 
@@ -30,7 +31,7 @@ def jumps(*found: tuple[int, float]) -> Steps:
 
 
 def test_under_load_and_the_way_it_pulls_it_may_be_the_gear(eq: Any) -> None:
-    found = once_under_load(eq, jumps((1, JUMP)))
+    found = once_under_load(eq, {}, jumps((1, JUMP)))
     assert found is not None
     assert (found.run, found.at, found.size, found.torque) == ("load_40nm_1", 905.0, JUMP, 40.0)
     assert "26.8 arcsec at 905 s in load_40nm_1, under 40 N·m" in found.sentence()
@@ -47,4 +48,22 @@ def test_under_load_and_the_way_it_pulls_it_may_be_the_gear(eq: Any) -> None:
     ],
 )
 def test_else_it_is_lost_counts(eq: Any, steps: Steps) -> None:
-    assert once_under_load(eq, steps) is None
+    assert once_under_load(eq, {}, steps) is None
+
+
+@pytest.mark.parametrize(
+    ("share", "noise", "gear"),
+    [(0.0, 1.0, True), (1.0, 1.0, False), (0.9, 10.0, True)],
+    ids=["nothing seems to speed up", "as if it did", "nothing is known"],
+)
+def test_a_load_that_seems_to_speed_up_and_is_felt_by_nobody_is_the_readings(
+    eq: Any, monkeypatch: pytest.MonkeyPatch, share: float, noise: float, gear: bool
+) -> None:
+    """A jump of the reading is an acceleration forth and back; what let the load go has a torque to go with it."""
+    spike = np.zeros((1000, 1))
+    spike[498:503, 0] = -1e3, -2e3, 0.0, 2e3, 1e3  # N·m for each rad
+    monkeypatch.setattr(asked, "made_by", lambda eq, run, row, side: {"A": np.ones((1000, 1)), "L": spike})
+    eq.noise = SimpleNamespace(weight=lambda c: 1 / (0.05 * noise) ** 2)
+    eq.without_offset = lambda key, x: x
+    left = {(1, "A"): np.zeros(1000), (1, "L"): share * JUMP * spike[:, 0]}
+    assert (once_under_load(eq, left, jumps((1, JUMP))) is not None) == gear

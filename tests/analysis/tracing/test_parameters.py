@@ -202,6 +202,21 @@ def test_two_loops_make_one_loss_with_the_interval_of_their_sum() -> None:
     assert both.ci95[1] - both.value == pytest.approx(half * np.sqrt(0.02), rel=1e-3)
 
 
+def test_two_frictions_that_build_up_are_one_with_the_interval_of_their_sum() -> None:
+    builds_up, each = CATALOGUE["presliding_friction"], 0.03
+    c = each**2 * np.array([[1.0, -0.9], [-0.9, 1.0]])
+    terms = []
+    for i, (size, way) in enumerate(((0.01, 0.05), (0.08, 0.06))):
+        by = np.zeros((4, 2))
+        by[0, i] = 1.0
+        fit = Fit(np.array([size]), (0.0, way, 0.0), by @ c @ by.T, SimpleNamespace(K=K), 50.0)  # type: ignore[arg-type]
+        terms.append(Told(builds_up, fit, by))
+    told = {p.name: p for p in joined(terms, c)}
+    assert told.keys() == {"tau_presliding", "x_0", "x_0_2"}
+    assert told["tau_presliding"].value == pytest.approx(0.09)
+    assert told["tau_presliding"].ci95[1] - 0.09 == pytest.approx(1.96 * each * np.sqrt(0.2), rel=1e-3)
+
+
 def test_two_laws_of_a_shrinking_error_leave_one_share_with_the_interval_of_both() -> None:
     law, each = CATALOGUE["load_dependent_kinematic_error"], 0.02
     series = FourierSeries((0.0, 3e-4), (0.0, 1e-4))

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from rig.analysis.tracing import searched
-from rig.analysis.tracing.searched import _shaken_as_it_stands as shaken_as_it_stands
+from rig.analysis.tracing.searched import _own_as_it_stands as own_as_it_stands
 
 
 @dataclass(frozen=True)
@@ -39,17 +39,21 @@ def solution(*names: str) -> Any:
 
 
 def own(*names: str) -> Any:
-    return SimpleNamespace(made=dict.fromkeys(names))
+    return SimpleNamespace(made=dict.fromkeys(names), jumped=None)
 
 
-@pytest.mark.parametrize(("made", "stands", "beside_it", "again"), [
-    (("external_vibration",), (), (), True),  # the lost motion is gone, and with it the vibration
-    (("external_vibration",), (), ("external_vibration",), False),
-    (("external_vibration",), ("lost_motion",), (), False),  # what it was found beside stands
-    (("missed_counts",), (), (), False),
+@pytest.mark.parametrize(("tried", "made", "stands", "beside_it", "again"), [
+    ("lost_motion", ("external_vibration",), (), (), True),  # the lost motion is gone, and with it the vibration
+    ("lost_motion", ("external_vibration",), (), ("external_vibration",), False),
+    ("lost_motion", ("external_vibration",), ("lost_motion",), (), False),  # what it was found beside stands
+    ("lost_motion", ("missed_counts",), (), (), False),
+    ("missed_counts", (), (), ("missed_counts",), True),  # none are lost on and on, and a step is looked for
+    ("missed_counts", (), (), (), False),
+    ("missed_counts", (), ("missed_counts",), ("missed_counts",), False),
 ])  # fmt: skip
-def test_it_is_selected_anew_where_beside_what_stands_there_is_no_vibration(
+def test_it_is_selected_anew_where_beside_what_stands_runs_have_another_thing_to_themselves(
     monkeypatch: pytest.MonkeyPatch,
+    tried: str,
     made: tuple[str, ...],
     stands: tuple[str, ...],
     beside_it: tuple[str, ...],
@@ -59,7 +63,7 @@ def test_it_is_selected_anew_where_beside_what_stands_there_is_no_vibration(
     monkeypatch.setattr(searched, "beside", lambda p, s, covered: (fresh, solution(*stands)))
     monkeypatch.setattr(searched, "select", lambda p, found, runs, covered: ("anew", p.held_out.calm))
     selected: Any = SimpleNamespace(p=Prepared(own(*made), HeldOut(True)), solution=solution(*stands))
-    found: Any = Found(solution("lost_motion"))
+    found: Any = Found(solution(tried))
     nothing: Any = None
-    out: Any = shaken_as_it_stands(selected, found, (), nothing)
+    out: Any = own_as_it_stands(selected, found, (), nothing)
     assert out == ("anew", True) if again else out is selected

@@ -1,16 +1,26 @@
-"""One jump in a whole campaign, under load and the way the load pulls: lost counts, or a gear that gave way."""
+"""One jump in a whole campaign, under load and the way the load pulls: lost counts, or a gear that gave way.
+
+What gives way lets the load go, and the torque sensor feels what that takes: torque and acceleration balance. A load
+angle that jumps by itself seems to accelerate the load for a moment, and nobody feels it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from rig.analysis.tracing.fit.equations import Equations
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.local import clock
-from rig.analysis.tracing.floor.steps import Steps
+from rig.analysis.tracing.floor.steps import Steps, made_by
 from rig.core.units import ARCSEC
+from rig.model.effect import Array
 
 LOADED: Final = 0.2  # of the largest mean torque of a run: less winds little up
+UNFELT: Final = 0.5  # of an acceleration that a jump of the reading seems to be; of the rest a load was let go
+SURE: Final = 2.5  # standard errors of it: a load that was let go has none of it, and a reading all
 
 
 @dataclass(frozen=True)
@@ -31,13 +41,30 @@ class OnceUnderLoad:
         )
 
 
-def once_under_load(eq: Equations, steps: Steps) -> OnceUnderLoad | None:
+def once_under_load(eq: Equations, e: Mapping[Key, Array], steps: Steps) -> OnceUnderLoad | None:
     """The only jump of `steps`, where what gives way would have made it; None where there are several, or the torque is
-    little, or pulls the other way. Counts are lost either way and without load, and mostly again."""
+    little, or pulls the other way, or the load's balance in what is left, `e`, says that it is the reading's. Counts
+    are lost either way and without load, and mostly again."""
     if sum(map(len, steps.rows.values())) != 1:
         return None
     (run, (row,)), (size,) = next(iter(steps.rows.items())), next(iter(steps.sizes.values()))
     torque, most = eq.runs[run].mean_torque, max(abs(r.mean_torque) for r in eq.runs)
-    if abs(torque) < LOADED * most or size * torque <= 0:
+    if abs(torque) < LOADED * most or size * torque <= 0 or _is_the_readings(eq, e, steps):
         return None
     return OnceUnderLoad(eq.runs[run].name, float(clock(eq, (run, "A"))[row]), size, torque)
+
+
+def _is_the_readings(eq: Equations, e: Mapping[Key, Array], steps: Steps) -> bool:
+    """Whether the balances of load and motor have most of the acceleration that the only jump seems to be, and surely
+    so."""
+    ((run, (row,)),) = steps.rows.items()
+    (size,), (side,) = steps.sizes[run], steps.sides[run]
+    along = work = 0.0
+    for c, made in made_by(eq, run, row, side).items():
+        if c in "ML" and (run, c) in e:
+            column = eq.without_offset((run, c), made)[:, 0]
+            along += float(column @ e[run, c]) * eq.noise.weight(c)
+            work += float(column @ column) * eq.noise.weight(c)
+    # of a jump as high as that of the angle: 1 of what is in the reading alone, 0 of what the load did
+    share, known = abs(along) / max(work * abs(size), 1e-300), 1 / max(np.sqrt(work) * abs(size), 1e-300)
+    return bool(share > max(UNFELT, SURE * known))

@@ -92,7 +92,7 @@ def _stepping(s: Solution, everywhere: Mapping[Key, Array], own: Own) -> Own:
         columns = step_columns(eq, steps)
         if explained(eq, everywhere, columns) <= OWN:
             return own
-        if (jumped := once_under_load(eq, steps)) is not None:
+        if (jumped := once_under_load(eq, everywhere, steps)) is not None:
             return replace(own, nameless=joined([own.nameless, columns]), jumped=jumped)
         return _with(own, LOST.name, columns, steps.parameters())
     if steps.rows or (between := find_between(s, whole)) is None:

@@ -174,7 +174,7 @@ def _placed(eq: Equations, e: Mapping[Key, Array], run: int, about: int) -> tupl
 def _gained(eq: Equations, e: Mapping[Key, Array], run: int, row: int, side: float) -> float:
     """Sum of squares over the noise's that a step of one size takes from all channels of a run."""
     along = work = 0.0
-    for c, made in _columns(eq, run, row, side).items():
+    for c, made in made_by(eq, run, row, side).items():
         if (run, c) in e and np.any(made):
             column = eq.without_offset((run, c), made)[:, 0]
             along += float(column @ e[run, c]) * eq.noise.weight(c)
@@ -182,7 +182,7 @@ def _gained(eq: Equations, e: Mapping[Key, Array], run: int, row: int, side: flo
     return along**2 / max(work, 1e-300)
 
 
-def _columns(eq: Equations, run: int, row: int, side: float) -> dict[str, Array]:
+def made_by(eq: Equations, run: int, row: int, side: float) -> dict[str, Array]:
     """What a jump makes in each channel of a run, (n, 1)."""
     t = clock(eq, (run, "A"))
     return dict(eq.term(run, Term(LOST, (side, 0.5 * (t[row] + t[max(row - 1, 0)])))))
@@ -292,7 +292,7 @@ def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
     """One column a jump in every channel it shows in, (n, jumps)."""
     out: dict[Key, Array] = {}
     for run, rows in steps.rows.items():
-        made = [_columns(eq, run, row, side) for row, side in zip(rows, steps.sides[run], strict=True)]
+        made = [made_by(eq, run, row, side) for row, side in zip(rows, steps.sides[run], strict=True)]
         for c in {c for m in made for c, x in m.items() if np.any(x)}:
             out[run, c] = np.hstack([m[c] for m in made if c in m and np.any(m[c])])
     return out

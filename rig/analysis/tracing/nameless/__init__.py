@@ -9,5 +9,5 @@ law.py       what all of them have in common
 loops.py     what stays behind
 springs.py   a stiffness that is no constant       errors.py   a kinematic error that is none
 readings.py  sensors and the torque constant       drags.py    friction, and what hangs on the load
-inertias.py  an inertia that is no constant
+inertias.py  an inertia that is no constant       angles.py   an angle read to another scale
 """

@@ -17,14 +17,17 @@ from rig.analysis.tracing.selection.standing import standing
 from rig.analysis.tracing.thresholds import AT_THE_FLOOR
 
 # a torque along the output's turn in one way only, as of a cable that tightens, is half of it a weight and half of it
-# friction along that turn
-ONE_WAY: Final[Mapping[str, frozenset[str]]] = {"sector_drag": frozenset({"gravity_unbalance"})}
+# friction along that turn; a reading that runs away below some speed, to another scale and back above that speed
+OTHER_HALF: Final[Mapping[str, frozenset[str]]] = {
+    "sector_drag": frozenset({"gravity_unbalance"}),
+    "other_scale": frozenset({"missed_counts"}),
+}
 
 
 def confounded(confounder: Confounder, names: tuple[str, ...]) -> Conclusion:
     """A law that is no effect of the library is in the model, which has it by then: no other term is added. A name that
     is half of what the law is the other half of does not stand beside it."""
-    names = tuple(name for name in names if name not in ONE_WAY.get(confounder.effect.name, ()))
+    names = tuple(name for name in names if name not in OTHER_HALF.get(confounder.effect.name, ()))
     verdict = Verdict(Status.UNKNOWN, names, (), confounder.coordinate, None, None, confounder.sentence)
     return Conclusion(verdict, None, (confounder.coordinate,), along(confounder.coordinate))
 

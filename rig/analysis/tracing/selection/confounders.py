@@ -11,6 +11,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, design, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
+from rig.analysis.tracing.nameless.angles import OtherScale
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag, WoundCable
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift, SharpError
 from rig.analysis.tracing.nameless.frames import PulledAside
@@ -233,6 +234,13 @@ CONFOUNDERS: Final = {
         "load",
         "The load angle is shifted by the weights that hang on the output, in proportion to them, and by no other "
         "torque, as where a weight pulls the shaft aside. No effect of the library does so.",
+    ),
+    "other_scale": Confounder(
+        OtherScale(),
+        "load_angle",
+        "The load angle runs away from the motor's by the same with every turn, at any speed, and comes back: one of "
+        "them is counted to another scale, or the ratio is another than was stated. No effect of the library does so.",
+        mimics=frozenset({"missed_counts"}),
     ),
     "droop": Confounder(
         Droop(),

@@ -35,13 +35,13 @@ def plainer(s: Solution, runs: Sequence[int]) -> Solution:
         other, share = found
         bare = reduced(s.design, [s.design.terms.index(term)])
         without, with_it = fit(bare).gain, fit(extended(bare, other, runs))
-        if with_it.gain - without > share * (s.gain - without) and _is_plausible(with_it):
+        if with_it.gain - without > share * (s.gain - without) and is_plausible(with_it):
             s = with_it
     return s
 
 
-def _is_plausible(s: Solution) -> bool:
-    """Whether the last term may be what it says: a drag brakes."""
+def is_plausible(s: Solution) -> bool:
+    """Whether the last term may be what it says: a drag brakes, what is shared out is no more than all."""
     last = len(s.design.terms) - 1
     return s.design.terms[last].effect.plausible(as_fit(s, s.design.terms[last], s.x[s.design.place(last)]))
 

@@ -22,6 +22,7 @@ from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.plainer import plainer
 from rig.analysis.tracing.selection.selected import Kept, Selected, in_words, is_loud, left_over
 from rig.analysis.tracing.selection.two_for_one import two_for_one
+from rig.analysis.tracing.selection.uneven_fall import uneven_fall
 from rig.analysis.tracing.thresholds import EXPLAINED, FREED, MISSING, NAMED, WORSE
 from rig.model.effect import Reach
 
@@ -39,10 +40,11 @@ def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Se
     solution, held, scores = _stood_in_for(p, (solution, held, scores), runs, covered)
     if (other := plainer(solution, runs)) is not solution:
         solution, held, scores = backward_elimination(other, p.held_out)
-    if (other := two_for_one(solution, runs, covered)) is not solution:
-        again = backward_elimination(other, p.held_out)
-        both = {term.name for term in again[0].design.terms} == {term.name for term in other.design.terms}
-        solution, held, scores = again if both else (solution, held, scores)
+    for instead in (two_for_one, uneven_fall):
+        if (other := instead(solution, runs, covered)) is not solution:
+            again = backward_elimination(other, p.held_out)
+            all_of_it = {term.name for term in again[0].design.terms} == {term.name for term in other.design.terms}
+            solution, held, scores = again if all_of_it else (solution, held, scores)
     told = solution.design.terms
     while vague := _not_told(p, solution, held, runs, covered):
         # one at a time: without it another one's law may be plain
