@@ -9,7 +9,7 @@ import pytest
 
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.levels import _runs, between, levels
+from rig.analysis.tracing.rest.levels import between, left_by_runs, levels
 from tests.analysis.tracing.spiked import Columns, spiked
 
 SPEEDS = np.repeat([6.3, 12.6, 21.0, 31.4, 41.9], 4)  # rad/s of the motor, four runs at each
@@ -57,9 +57,9 @@ def test_a_runs_mean_is_put_back_and_turns_with_its_way() -> None:
     way = np.array([[-1.0] * 100, [1.0, -1.0] * 50, [1.0] * 100, [1.0] * 70 + [-1.0] * 30])
     offset = np.repeat([0.5, 0.5, 1.0, 0.5], 100)
     friction = 3.0 * way * np.repeat([0.5, 1.0, 0.0, 1.0], 100).reshape(4, 100)
-    at = {"direction": way.ravel(), "speed": 20.0 * way.ravel()}
+    at = {"direction": way.ravel(), "speed": 20.0 * way.ravel(), "time": np.arange(400.0)}
     run = np.repeat(np.arange(4), 100)
-    found = _runs(Rest(friction.ravel(), run, at, 0.01, np.zeros((400, 0)), np.zeros((0, 0)), offset=offset))
+    found = left_by_runs(Rest(friction.ravel(), run, at, 0.01, np.zeros((400, 0)), np.zeros((0, 0)), offset=offset))
     assert found.left.tolist() == pytest.approx([3.0, 3.0])
     assert found.speed.tolist() == pytest.approx([20.0, 20.0])
 

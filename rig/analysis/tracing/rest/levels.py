@@ -33,10 +33,14 @@ FRICTION: Final = ("M", "L")  # channels in which friction stands
 
 @dataclass(frozen=True)
 class Runs:
-    """What each of k runs has left that turns with its way, over the floor (k,), and its speed [rad/s] (k,)."""
+    """What each of k runs has left that turns with its way, over the floor (k,), its speed [rad/s], its mean way from
+    −1 to 1, when it was taken [s of the campaign], and which it is, all (k,)."""
 
     left: Array
     speed: Array
+    way: Array
+    since: Array
+    number: Index
 
 
 def friction_by_speed(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> Home | None:
@@ -51,7 +55,7 @@ def _in_channel(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, floa
     r = rest(eq, turning, floors, channel, beside=False)
     if r is None:
         return None
-    runs = _runs(r)
+    runs = left_by_runs(r)
     level = levels(runs.speed)
     share = between(runs.left, level)
     if share is None:
@@ -65,19 +69,23 @@ def _in_channel(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, floa
     return Home("speed", channel, share, read=in_bins(index))
 
 
-def _runs(r: Rest) -> Runs:
-    """Of runs that turn one way, or as far forth as back. What was taken off a mean as the run's own is put back."""
-    left, speed = [], []
+def left_by_runs(r: Rest, uneven: float = TURNING) -> Runs:
+    """Of runs that turn one way, or as far forth as back but for a share of `uneven`. What was taken off a mean as the
+    run's own is put back."""
+    left, speed, ways, since, number = [], [], [], [], []
     for run in np.unique(r.run):
         mine = r.run == run
         way, own = np.sign(r.at["direction"][mine]), float(np.mean(r.offset[mine]))
         one_way = float(np.mean(way))
         kept = 1.0 - own * one_way**2
-        if TURNING < abs(one_way) < 1.0 - TURNING or kept < 1.0 - OWN:
+        if uneven < abs(one_way) < 1.0 - TURNING or kept < 1.0 - OWN:
             continue
         left.append(float(np.mean(r.e[mine] * way)) / kept)
         speed.append(float(np.mean(np.abs(r.at["speed"][mine]))))
-    return Runs(np.array(left), np.array(speed))
+        ways.append(one_way)
+        since.append(float(np.mean(r.at["time"][mine])))
+        number.append(run)
+    return Runs(np.array(left), np.array(speed), np.array(ways), np.array(since), np.array(number, np.int64))
 
 
 def levels(speed: Array) -> Index:

@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
+from rig.analysis.tracing.rest.for_a_while import for_a_while
 from rig.analysis.tracing.rest.foretold import smooth_term
 from rig.analysis.tracing.rest.hidden_order import WHOLE_ORDER, hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
@@ -38,6 +39,7 @@ def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     return (
         _in_the_floor(p, s, after, floors)
         or _in_the_spring(p, s, after)
+        or _for_a_while(p, s, after, floors)
         or _at_one_speed(p, s, after, floors)
         or _nearly_loud(p, s, after, floors)
         or _in_one_run(p, s)
@@ -89,6 +91,18 @@ def _in_the_spring(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Conc
     """Repeats differ by what their torque winds up; None where they do not."""
     left = {key: s.residual(key) for key in s.keys}
     found = same_spring(p.eq, {**left, **after}, s.value("compliance"))
+    if found is None:
+        return None
+    verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, found.sentence())
+    return Conclusion(verdict, None, ("time",), along("time"))
+
+
+def _for_a_while(
+    p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]
+) -> Conclusion | None:
+    """No run has more left than its floor, but all runs of a while have the same more; None where they have not."""
+    left = {key: s.residual(key) for key in s.keys}
+    found = for_a_while(p.eq, {**left, **after}, {**floors, **p.held_out.floors})
     if found is None:
         return None
     verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, found.sentence())
