@@ -14,10 +14,10 @@ from rig.model.effect import Array
 RUNS, ROWS, STEP, TAU = 12, 800, 0.05, 6.0  # s
 
 
-def at(time: Array, e: Array, timed: bool = True) -> Halves:
+def at(time: Array, e: Array, timed: bool = True, way: float | Array = 1.0) -> Halves:
     run = np.repeat(np.arange(RUNS), ROWS)
     none = np.zeros((time.size, 0))
-    angle = {"motor_angle": 5.0 * time, "load_angle": 0.1 * time, "direction": np.ones(time.size)}
+    angle = {"motor_angle": 5.0 * time, "load_angle": 0.1 * time, "direction": way * np.ones(time.size)}
     r = Rest(e, run, {"time": time, **angle}, STEP, none, none[:0], own_zeros=False, timed=timed)
     return Halves(r, folds(r))
 
@@ -41,3 +41,14 @@ def test_what_drifts_through_the_campaign_or_comes_and_goes_does_not_settle(
     time = since + np.repeat(100.0 * np.arange(RUNS), ROWS)
     e = 5 * np.exp(-time / 300.0) if once else 5 * np.sin(2 * np.pi * since / 11.0)
     assert settled(at(time, e + rng.standard_normal(time.size)), "A") == []
+
+
+def test_a_brake_that_drags_from_the_same_second_of_each_run_on_is_told_by_one_number(rng: np.random.Generator) -> None:
+    since = np.tile(STEP * np.arange(ROWS), RUNS)
+    time, way = since + np.repeat(100.0 * np.arange(RUNS), ROWS), np.repeat(np.resize([1.0, -1.0], RUNS), ROWS)
+    e = 3 * way * (since > 5.2) + rng.standard_normal(time.size)
+    (home,) = settled(at(time, e, way=way), "M")
+    assert (home.coordinate, home.first) == ("time", True)
+    assert home.share > 0.9
+    assert "since each run began, from about 5 s on" in of_the_rest(home, 4.0)
+    assert settled(at(time, e, way=way), "A") == []  # what turns with the way is no angle's zero

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -9,28 +11,50 @@ import numpy as np
 from rig.analysis.tracing.rest.binned import Halves
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.rest.lines import SENSES
 from rig.analysis.tracing.rest.readings import in_columns, share
 from rig.model.effect import Array
 
 CONSTANTS: Final = (0.6, 1.5, 4.0, 8.0, 16.0, 40.0)  # s
+MOMENTS: Final = np.arange(1.0, 20.0)  # s since the start: runs of constant speed are 10 to 20 s long
 MOST: Final = 0.6  # of the excess: one number that foretells so much of it is no chance
 
 
 def settled(h: Halves, channel: str) -> list[Home]:
-    """One number that is gone exponentially with the time since each run began: the time constant that foretells most.
-    Where runs begin at one angle, or a torque has acted since, those tell it as well, with many numbers: the one that
-    does nearly as well with one is said first."""
+    """One number that is gone exponentially with the time since each run began, or is there from one moment of each run
+    on: the time constant, or the moment, that foretells most. Where runs begin at one angle, or a torque has acted
+    since, those tell it as well, with many numbers: the one that does nearly as well with one is said first."""
     if not h.rest.timed:
         return []
-    found = max((_within(h, channel, tau) for tau in CONSTANTS), key=lambda home: home.share)
+    found = max((_within(h, channel, *law) for law in _laws(channel)), key=lambda home: home.share)
     return [found] if found.first else []
 
 
-def _within(h: Halves, channel: str, tau: float) -> Home:
-    read = in_columns(lambda rest: np.exp(-_since_it_began(rest) / tau)[:, None])
+Law = tuple[Callable[[Rest], Array], str]
+"""What it is of the time since each run began (n,), and in words."""
+
+
+def _laws(channel: str) -> Iterator[Law]:
+    """Of an angle's zero, or of a torque; of a torque as of friction as well, which turns with the way."""
+    for sense in SENSES if channel in "ML" else SENSES[:1]:
+        for tau in CONSTANTS:
+            yield partial(_falls, tau, sense), f"with a time constant near {tau:.2g} s"
+        for moment in MOMENTS.tolist() if channel in "ML" else ():
+            yield partial(_is_there, moment, sense), f"from about {moment:.2g} s on"
+
+
+def _falls(tau: float, sense: Callable[[Rest], Array], r: Rest) -> Array:
+    return np.asarray(np.exp(-_since_it_began(r) / tau) * sense(r))
+
+
+def _is_there(moment: float, sense: Callable[[Rest], Array], r: Rest) -> Array:
+    return np.asarray((_since_it_began(r) > moment) * sense(r))
+
+
+def _within(h: Halves, channel: str, law: Callable[[Rest], Array], words: str) -> Home:
+    read = in_columns(lambda rest: law(rest)[:, None])
     found = share(h, read)
-    said = f"the time since each run began, with a time constant near {tau:.2g} s"
-    return Home("time", channel, found, read=read, first=found > MOST, said=said)
+    return Home("time", channel, found, read=read, first=found > MOST, said=f"the time since each run began, {words}")
 
 
 def _since_it_began(r: Rest) -> Array:
