@@ -31,3 +31,17 @@ def test_a_table_of_long_names_is_not_cut_off(name: str, context: BrowserContext
     page.set_viewport_size({"width": 1200, "height": 800})
     page.set_content(f'<style>{sheet}</style><div class="sheet"><main>{body}</main></div>')
     assert page.evaluate("(e => e.scrollWidth - e.clientWidth)(document.querySelector('.scroll'))") <= 1
+
+
+def test_a_long_name_beside_a_long_number_leaves_both_whole(context: BrowserContext) -> None:
+    pair = f"<div><dt><b>B_m</b> {WORDS}</dt><dd>4.4646 ± 0.0058 mN·m·s/rad</dd></div>"
+    kept = "<div><dt>how runs were held out</dt><dd>whole repeats, and whole loads and speeds between others</dd></div>"
+    body = f'<section class="physical"><dl class="rows">{2 * pair}</dl></section>'
+    body += f'<section id="provenance"><dl class="rows">{2 * kept}</dl></section>'
+    page = context.new_page()
+    page.set_content(
+        f'<style>{shell.css("page", "", shell.HERE / "trace")}</style><div class="sheet"><main>{body}</main></div>'
+    )
+    for width in (500, 1100, 1200, 1440):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 1

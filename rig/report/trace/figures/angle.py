@@ -14,7 +14,7 @@ from rig.report.trace.figures.style import AFTER, BEFORE, handle
 
 PARTS = (  # angle and residual of each panel
     ("angle.deg", "angle", "Mean residual against motor angle"),
-    ("turn.load_deg", "turn", "Mean residual of whole motor turns against load angle"),
+    ("turn.load_deg", "turn", "Mean residual of motor turns by load angle"),
 )
 
 
