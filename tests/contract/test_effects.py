@@ -260,6 +260,16 @@ def test_counts_lost_again_and_again_go_with_the_way_and_not_with_the_ratio():
     assert effect.shapes(dataclasses.replace(REACH, runs=2)) == (), "in one log it is the time, and an angle"
 
 
+def test_counts_lost_one_way_are_kept_on_the_way_back():
+    effect, forward, backward = CATALOGUE["missed_counts"], motion(1.0), motion(-1.0)
+    turns = (forward.theta_l[-1] - forward.theta_l[0]) / (2 * np.pi)
+    for law, ends in ((missed_counts.FORTH, [-turns, 0.0]), (missed_counts.BACK, [0.0, -turns])):
+        got = [effect.columns(s, (law, 0.0))[Port.READS_THETA_L][-1, 0] for s in (forward, backward)]
+        np.testing.assert_allclose(got, ends, rtol=1e-3, atol=1e-9)
+        assert (law, 0.0) in effect.shapes(REACH)
+        assert (law, 0.0) not in effect.shapes(dataclasses.replace(REACH, backwards=0.0)), "that is whichever way"
+
+
 def test_counts_lost_above_a_speed_are_lost_nowhere_below_it():
     effect, s = CATALOGUE["missed_counts"], motion()  # from 2 to 10 rad/s
     (lost,) = effect.columns(s, (missed_counts.GONE, 8.0)).values()

@@ -11,6 +11,8 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: the encoder that lost them once, at an instant
 GONE, FURTHEST, TURNED = 2.0, 3.0, 4.0  # again and again: with the way gone, the furthest from the start, the turning
+FORTH, BACK = 5.0, 6.0  # with the way gone one way alone
+SOME = 0.1  # share of the rows that go back
 WIDE = 1.5  # fastest over slowest: at one speed the way is the time
 SEVERAL = 4  # runs: in one log the way is the time, and an angle
 
@@ -19,7 +21,8 @@ class MissedCounts(Effect):
     """Once: from the instant t_0 on the reading of one angle is off by a constant step; every run has its own instants.
 
     Again and again, too little at a time to be seen one by one: the reading falls behind in proportion to the way since
-    the run began, at any speed or faster than ω_0. A disc closes upon itself, so that no scale of an encoder does that.
+    the run began, at any speed or faster than ω_0, or one way alone. A disc closes upon itself, so that no scale of an
+    encoder does that.
     Whatever is lost alike forth and back (TURNED at any speed) is the ratio's.
 
     The gear does not move: no torque goes with it. What a tooth does comes back at the same angle, lost counts do not.
@@ -32,6 +35,8 @@ class MissedCounts(Effect):
         "step_theta_l": "usual step of the load encoder's reading, at the output",
         "step_theta_m": "usual step of the motor encoder's reading",
         "lost_per_turn_gone": "what θ̃ runs away by while the output turns once, whichever way",
+        "lost_per_turn_forth": "what θ̃ runs away by while the output turns once forth, and keeps while it turns back",
+        "lost_per_turn_back": "what θ̃ runs away by while the output turns once back, and keeps while it turns forth",
         "lost_per_turn_further": "what θ̃ runs away by while the output gets a turn further from where the run began",
         "lost_per_turn": "what θ̃ runs away by while the output turns once, and comes back by while it turns back",
         "above_speed": "ω_0, speed of the motor below which nothing is lost, of a few that were tried",
@@ -47,11 +52,12 @@ class MissedCounts(Effect):
         if reach.runs < SEVERAL or reach.fastest <= WIDE * reach.slowest or not {"theta_m", "theta_l"} <= reach.has:
             return ()
         speeds = [w for w in self.SPEEDS if reach.slowest < w < reach.fastest]
-        return ((GONE, 0.0), (FURTHEST, 0.0), *((TURNED, w) for w in speeds))
+        one_way = ((FORTH, 0.0), (BACK, 0.0)) if reach.backwards > SOME else ()
+        return ((GONE, 0.0), (FURTHEST, 0.0), *one_way, *((TURNED, w) for w in speeds))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """Chosen, not fitted: a speed, or an instant within the campaign."""
-        return ((LOAD, TURNED), (0.0, max(reach.duration, *self.SPEEDS)))
+        return ((LOAD, BACK), (0.0, max(reach.duration, *self.SPEEDS)))
 
     def has_state(self) -> bool:
         """The way since the run began."""
@@ -78,6 +84,9 @@ class MissedCounts(Effect):
         step = np.where(np.abs(signals.omega_m) > above, step, 0.0)
         if law == GONE:  # noise of a reading goes forth and back, and is no way
             return np.asarray(np.cumsum(signals.way * step))
+        if law in (FORTH, BACK):
+            lossy = signals.way == (1.0 if law == FORTH else -1.0)
+            return np.asarray(np.cumsum(np.where(lossy, signals.way * step, 0.0)))
         gone = np.cumsum(step)
         return np.asarray(np.maximum.accumulate(np.abs(gone)) if law == FURTHEST else gone)
 
@@ -88,7 +97,13 @@ class MissedCounts(Effect):
         along = np.zeros(fit.covariance.shape[0])
         along[0] = 1.0
         step = {LOAD: "step_theta_l", MOTOR: "step_theta_m"}
-        lost = {GONE: "lost_per_turn_gone", FURTHEST: "lost_per_turn_further", TURNED: "lost_per_turn"}
+        lost = {
+            GONE: "lost_per_turn_gone",
+            FURTHEST: "lost_per_turn_further",
+            TURNED: "lost_per_turn",
+            FORTH: "lost_per_turn_forth",
+            BACK: "lost_per_turn_back",
+        }
         size = parameter({**step, **lost}[law], fit.coefficients[0], fit.half_width(along), "rad")
         # neighbours of a speed are half and twice as high
         return (size, parameter("above_speed", at, at / 2, "rad/s")) if law in lost and at else (size,)

@@ -353,6 +353,19 @@ def test_a_staircase_of_steps_too_small_to_be_seen_is_told_by_the_way(tmp_path: 
 
 @pytest.mark.slow
 @pytest.mark.long
+def test_counts_lost_one_way_alone_are_told_by_that_way(tmp_path: Path, shared: Path) -> None:
+    def lossy(c: Columns, began: float) -> Columns:
+        step = np.diff(c["theta_m"], prepend=c["theta_m"][0]) / RATIO
+        return {"theta_l": c["theta_l"] - 2e-5 * np.cumsum(np.maximum(step, 0.0))}
+
+    found = spiked(tmp_path, shared / "cases" / "open-1", lossy)
+    assert found.verdict.effects == ("missed_counts",)
+    values = {p.name: p for p in found.effects[0].parameters}
+    assert values["lost_per_turn_forth"].value == pytest.approx(2e-5 * 2 * np.pi, rel=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.long
 def test_a_fitted_run_that_stands_far_above_its_floor_is_said_though_unseen_runs_leave_nothing(
     tmp_path: Path, shared: Path
 ) -> None:

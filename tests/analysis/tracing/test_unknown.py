@@ -347,6 +347,17 @@ def test_friction_that_steps_up_before_all_fast_runs_is_told_beside_the_baseline
     assert (found.coordinate, found.share) == ("time", pytest.approx(1.0, abs=0.05))
 
 
+@pytest.mark.parametrize(("most", "first"), [(0.5, True), (0.86, False)])
+def test_a_step_in_time_is_said_first_unless_the_speed_beside_the_way_foretells_more(
+    monkeypatch: pytest.MonkeyPatch, most: float, first: bool
+) -> None:
+    """Shoes that drag on a shaft below some speed, and slow runs that were mostly taken first."""
+    nothing: Any = None
+    monkeypatch.setattr(unknown, "since", lambda h, channel, sense: Home("time", channel, 0.72))
+    steps = unknown._at_once(nothing, "M", [Home("speed", "M", 0.3), Home("time", "M", 0.7)], most)
+    assert {step.first for step in steps} == {first}
+
+
 def test_within_a_seventh_of_a_turn_no_order_is_told_that_does_not_come_round_once() -> None:
     rng = np.random.default_rng(10)
     swing = 0.44 * np.sin(np.linspace(0.0, 20.0, RUNS * ROWS))  # rad

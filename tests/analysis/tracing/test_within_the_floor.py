@@ -25,6 +25,7 @@ EVERY = 84.0  # s
 SEAL = 2.6  # s
 PUMP = 48.0  # s
 STROKES = 6.2  # s, more than a fast run takes
+REFILL = 31.0  # s
 CAGE = 0.4512  # orders of the motor
 SEGMENTS = 11  # of the scale of a load encoder
 NO_REPEATS = ("slow_ke_1", "speed_120rpm_1", "speed_200rpm_1", "speed_300rpm_1", "lock_60_1")
@@ -43,6 +44,12 @@ def rubbing(c: Columns, began: float) -> Columns:
 def pumping(c: Columns, began: float) -> Columns:
     on = np.mod(began + c["t"], STROKES) < STROKES / 2
     return {"tau_m": c["tau_m"] + 0.009 * on * np.sign(np.gradient(c["theta_m"]))}
+
+
+def refilled(c: Columns, began: float) -> Columns:
+    gone = np.mod(began + c["t"], REFILL)
+    pressure = np.where(gone < 0.85 * REFILL, 1 - gone / (0.85 * REFILL), (gone / REFILL - 0.85) / 0.15)
+    return under(c, 0.8 * pressure * np.sign(np.gradient(c["theta_m"])))
 
 
 def swelling(c: Columns, began: float) -> Columns:
@@ -80,6 +87,7 @@ def loaded(c: Columns, began: float) -> Columns:
         pytest.param(rubbing, EVERY, marks=pytest.mark.long),
         pytest.param(swelling, PUMP, marks=pytest.mark.long),
         pytest.param(pumping, STROKES, marks=pytest.mark.long),
+        pytest.param(refilled, REFILL, marks=pytest.mark.long),
     ],
 )
 def test_what_follows_the_clock_makes_the_floor_and_is_told(

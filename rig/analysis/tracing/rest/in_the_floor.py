@@ -32,7 +32,8 @@ MOST: Final = 20_000  # of them: eight hours; each costs a fit
 FASTEST: Final = 0.8  # Hz; what is faster is a line in every run by itself
 OFTEN: Final = 8.0  # means a second at which what comes and goes faster than the slow ones is sought
 PEAKS: Final = 30  # of its spectrum that are looked at
-HARMONICS: Final = 3  # of its frequency: a brake that is on for a third of the time has as many
+NEAR: Final = 9  # frequencies tried about the one that is found
+HARMONICS: Final = 5  # of its frequency: what is filled at once and runs down has as many
 FEWEST: Final = 4  # runs
 LARGEST: Final = 2.0  # order of a two-lobed wave generator, the largest of its kinematic error
 BESIDE_ZEROS: Final = 0.05  # of the square of the floor: less than that zeros of runs may leave by chance
@@ -137,11 +138,14 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | N
     fast = _Means.of(r, way, OFTEN)
     tried = [(slow.explained(f), f) for f in np.arange(TWICE * FINE * step, SLOWEST, step).tolist()]
     best: float = max(tried + [(fast.explained(f), f) for f in fast.loudest(step)])[1]
+    means = slow if best < SLOWEST else fast
+    near = np.linspace(
+        best - step, best + step, NEAR
+    ).tolist()  # half a step off, an overtone is a radian out by the end
+    best = max((means.explained(f, HARMONICS), f) for f in near)[1]
 
     def columns(rest: Rest) -> Array:
-        time = TURN * rest.at["time"]
-        made = np.hstack([waves(time, k * best) for k in range(1, HARMONICS + 1)])
-        return _times(made, _wide(sense(rest)))
+        return _times(_overtones(rest.at["time"], best, HARMONICS), _wide(sense(rest)))
 
     return in_columns(columns), best
 
@@ -170,9 +174,9 @@ class _Means:
         bare = cls(t, e, np.stack(w, 1), runs, r.e.size / t.size)
         return replace(bare, e=bare._without_zeros(e))
 
-    def explained(self, hz: float) -> float:
-        """Sum of squares of rows that a wave of that frequency explains."""
-        z = self._without_zeros(_times(waves(TURN * self.t, hz), self.way))
+    def explained(self, hz: float, harmonics: int = 1) -> float:
+        """Sum of squares of rows that a wave of that frequency explains, and its overtones up to so many of them."""
+        z = self._without_zeros(_times(_overtones(self.t, hz, harmonics), self.way))
         return _explained(z, self.e) * self.rows
 
     def loudest(self, step: float) -> list[float]:
@@ -190,6 +194,11 @@ class _Means:
     def _without_zeros(self, x: Array) -> Array:
         made = self.zeros
         return np.asarray(x - made @ (made.T @ x / np.maximum(made.sum(0), 1.0).reshape(-1, *[1] * (x.ndim - 1))))
+
+
+def _overtones(t: Array, hz: float, harmonics: int) -> Array:
+    """Cosine and sine of a wave and its overtones at times [s], (n, 2·harmonics)."""
+    return np.hstack([waves(TURN * t, k * hz) for k in range(1, harmonics + 1)])
 
 
 def _wide(x: Array) -> Array:

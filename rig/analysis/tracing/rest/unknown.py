@@ -64,7 +64,8 @@ def homes(r: Rest, channel: str) -> list[Home]:
         out.append(gone)
     out += [*worn_off(h, channel), *settled(h, channel)]
     out += _frequencies(h, seen, channel)
-    out += _at_once(h, channel, alone)
+    plainly = [other.share for other in out if not other.late and other.coordinate not in (*WITH_TIME, "memory")]
+    out += _at_once(h, channel, alone, max(plainly))
     if channel == "A":
         out = _told_by_the_way(out, alone)
     if channel == "M" and _goes_both_ways(r):
@@ -146,15 +147,20 @@ def _of_the_output(found: Home, r: Rest) -> Home:
     return found
 
 
-def _at_once(h: Halves, channel: str, others: Sequence[Home]) -> list[Home]:
+def _at_once(h: Halves, channel: str, others: Sequence[Home], most: float) -> list[Home]:
     """Steps at one moment, said first of all: they have one number. Not where a coordinate by itself does nearly as
-    well: all slow runs may have been taken before all fast ones. Where a step leaves next to nothing, a coordinate that
-    leaves several times as much only follows the order of the runs."""
+    well, or one beside the way does better, which foretells `most`: all slow runs may have been taken before all fast
+    ones. Where a step leaves next to nothing, a coordinate that leaves several times as much only follows the order of
+    the runs."""
     turned = turned_since(h, channel) if channel == "A" else None
     senses = (*SENSES, _load) if channel == "L" else SENSES
     steps = [*(since(h, channel, sense) for sense in senses), *([turned] if turned else [])]
     best = max(other.share for other in others if other.coordinate not in WITH_TIME)
-    return [replace(step, first=best < PLAIN_ENOUGH * step.share or _is_it(step.share, best)) for step in steps]
+
+    def is_first(step: Home) -> bool:
+        return most < step.share and (best < PLAIN_ENOUGH * step.share or _is_it(step.share, best))
+
+    return [replace(step, first=is_first(step)) for step in steps]
 
 
 def _load(r: Rest) -> Array:
