@@ -53,8 +53,8 @@ def test_else_it_is_lost_counts(eq: Any, steps: Steps) -> None:
 
 @pytest.mark.parametrize(
     ("share", "noise", "gear"),
-    [(0.0, 1.0, True), (1.0, 1.0, False), (0.9, 10.0, True)],
-    ids=["nothing seems to speed up", "as if it did", "nothing is known"],
+    [(0.0, 1.0, True), (1.0, 1.0, False), (-1.0, 1.0, True), (0.9, 10.0, True)],
+    ids=["nothing seems to speed up", "as if it did", "the other way", "nothing is known"],
 )
 def test_a_load_that_seems_to_speed_up_and_is_felt_by_nobody_is_the_readings(
     eq: Any, monkeypatch: pytest.MonkeyPatch, share: float, noise: float, gear: bool
@@ -65,5 +65,5 @@ def test_a_load_that_seems_to_speed_up_and_is_felt_by_nobody_is_the_readings(
     monkeypatch.setattr(asked, "made_by", lambda eq, run, row, side: {"A": np.ones((1000, 1)), "L": spike})
     eq.noise = SimpleNamespace(weight=lambda c: 1 / (0.05 * noise) ** 2)
     eq.without_offset = lambda key, x: x
-    left = {(1, "A"): np.zeros(1000), (1, "L"): share * JUMP * spike[:, 0]}
+    left = {(1, "A"): np.full(1000, JUMP), (1, "L"): share * JUMP * spike[:, 0]}
     assert (once_under_load(eq, left, jumps((1, JUMP))) is not None) == gear

@@ -58,13 +58,14 @@ def _is_the_readings(eq: Equations, e: Mapping[Key, Array], steps: Steps) -> boo
     """Whether the balances of load and motor have most of the acceleration that the only jump seems to be, and surely
     so."""
     ((run, (row,)),) = steps.rows.items()
-    (size,), (side,) = steps.sizes[run], steps.sides[run]
-    along = work = 0.0
-    for c, made in made_by(eq, run, row, side).items():
-        if c in "ML" and (run, c) in e:
-            column = eq.without_offset((run, c), made)[:, 0]
-            along += float(column @ e[run, c]) * eq.noise.weight(c)
-            work += float(column @ column) * eq.noise.weight(c)
+    sums = dict.fromkeys("AML", (0.0, 0.0))  # products of the jump with what is left, and with itself, over the noise
+    for c, made in made_by(eq, run, row, steps.sides[run][0]).items():
+        if (run, c) in e and c in sums:
+            column, weight = eq.without_offset((run, c), made)[:, 0], eq.noise.weight(c)
+            sums[c] = float(column @ e[run, c]) * weight, float(column @ column) * weight
+    (seen, angle), (along, work) = sums["A"], np.add(sums["M"], sums["L"])
+    if min(angle, work) <= 0 or seen == 0:
+        return False
     # of a jump as high as that of the angle: 1 of what is in the reading alone, 0 of what the load did
-    share, known = abs(along) / max(work * abs(size), 1e-300), 1 / max(np.sqrt(work) * abs(size), 1e-300)
-    return bool(share > max(UNFELT, SURE * known))
+    size = seen / angle
+    return bool(along / work / size > max(UNFELT, SURE / (np.sqrt(work) * abs(size))))

@@ -139,10 +139,8 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | N
     tried = [(slow.explained(f), f) for f in np.arange(TWICE * FINE * step, SLOWEST, step).tolist()]
     best: float = max(tried + [(fast.explained(f), f) for f in fast.loudest(step)])[1]
     means = slow if best < SLOWEST else fast
-    near = np.linspace(
-        best - step, best + step, NEAR
-    ).tolist()  # half a step off, an overtone is a radian out by the end
-    best = max((means.explained(f, HARMONICS), f) for f in near)[1]
+    near = np.linspace(best - step, best + step, NEAR).tolist()
+    best = max((means.explained(f, HARMONICS), f) for f in near)[1]  # an overtone would be a radian out by the end
 
     def columns(rest: Rest) -> Array:
         return _times(_overtones(rest.at["time"], best, HARMONICS), _wide(sense(rest)))
