@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor import offsets
 from rig.analysis.tracing.rest import zeros_by_speed as module
 from rig.analysis.tracing.rest.zeros_by_speed import ZerosBySpeed, zeros_by_speed
-from rig.model.effect import MEASURED
+from tests.analysis.tracing.zeros import SOFT, solution_of
 
 SPEEDS = np.tile([12.5, 1.0, 6.0, 21.0, 31.0, 42.0, -6.0, -21.0, -42.0, 42.0], 3)  # rad/s
 TIMES = 60.0 * np.arange(SPEEDS.size)  # s
-WANDER, SIZE, SOFT = 1e-6, 1.2e-5, 1.33e-4  # rad, rad, rad/(N·m)
+WANDER, SIZE = 1e-6, 1.2e-5  # rad
 THROWN = SIZE * (SPEEDS / 42.0) ** 2
 
 
@@ -24,24 +21,7 @@ def found(
     monkeypatch: pytest.MonkeyPatch, zeros: Sequence[float], speeds: np.ndarray = SPEEDS, torque: float = 0.0
 ) -> ZerosBySpeed | None:
     """Of runs with those zeros [rad], every third unseen; `torque` [N·m per rad] is what the load's balance shows."""
-    runs = [
-        SimpleNamespace(
-            locked=False,
-            has=MEASURED,
-            mean_torque=0.5 * np.sign(v),
-            turning=abs(v),
-            pieces=[SimpleNamespace(t=np.array([t, t + 20.0]), omega_m=np.full(2, v))],
-        )
-        for t, v in zip(TIMES, speeds, strict=True)
-    ]
-    rows = {(i, c) for i in range(speeds.size) for c in "AL"}
-    eq = SimpleNamespace(runs=runs, rows=rows)
-    s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), value=lambda name: {"compliance": SOFT}[name])
-    known = {"A": zeros, "L": torque * np.asarray(zeros)}
-    for where in (module, offsets):
-        monkeypatch.setattr(where, "offset", lambda _, run, channel: known[channel][run])
-    unseen = range(1, speeds.size, 3)
-    return zeros_by_speed(s, [i for i in range(speeds.size) if i not in unseen], unseen)
+    return zeros_by_speed(*solution_of(monkeypatch, module, zeros, speeds, torque))
 
 
 def wander(rng: np.random.Generator) -> np.ndarray:

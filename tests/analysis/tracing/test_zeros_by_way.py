@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor import offsets
 from rig.analysis.tracing.rest import zeros_by_way as module
 from rig.analysis.tracing.rest.zeros_by_way import ZerosByWay, zeros_by_way
 from rig.core.units import RPM
-from rig.model.effect import MEASURED
+from tests.analysis.tracing.zeros import SOFT, solution_of
 
 SPEEDS = np.tile(RPM * np.array([120.0, 0.0, 60.0, -60.0, 240.0, -240.0, 300.0, -300.0, 420.0, -420.0]), 3)  # rad/s
-WANDER, SIZE, SOFT = 1e-6, 2.6e-5, 1.33e-4  # rad, rad, rad/(N·m)
+WANDER, SIZE = 1e-6, 2.6e-5  # rad
 STEP = SIZE * np.sign(SPEEDS) * (np.abs(SPEEDS) > 210 * RPM)
 
 
@@ -23,23 +19,7 @@ def found(
     monkeypatch: pytest.MonkeyPatch, zeros: np.ndarray, speeds: np.ndarray = SPEEDS, torque: float = 0.0
 ) -> ZerosByWay | None:
     """Of runs with those zeros [rad], every third unseen; `torque` [N·m per rad] is what the load's balance shows."""
-    times = 60.0 * np.arange(speeds.size)
-    runs = [
-        SimpleNamespace(
-            locked=False,
-            has=MEASURED,
-            mean_torque=0.5 * np.sign(v),
-            pieces=[SimpleNamespace(t=np.array([t, t + 20.0]), omega_m=np.full(2, v))],
-        )
-        for t, v in zip(times, speeds, strict=True)
-    ]
-    eq = SimpleNamespace(runs=runs, rows={(i, c) for i in range(speeds.size) for c in "AL"})
-    s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), value=lambda name: {"compliance": SOFT}[name])
-    known = {"A": zeros, "L": torque * zeros}
-    for where in (module, offsets):
-        monkeypatch.setattr(where, "offset", lambda _, run, channel: known[channel][run])
-    unseen = range(1, speeds.size, 3)
-    return zeros_by_way(s, [i for i in range(speeds.size) if i not in unseen], unseen)
+    return zeros_by_way(*solution_of(monkeypatch, module, zeros, speeds, torque))
 
 
 def wander(rng: np.random.Generator) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import offset
+from rig.analysis.tracing.runs.recording import mean_speed
 from rig.model.effect import MEASURED
 
 RUNS: Final = 5  # that turn freely
@@ -29,7 +30,7 @@ def about_a_line(s: Solution) -> float | None:
     runs = [i for i in sorted({i for i, c in s.keys if c == "A"}) if not eq.runs[i].locked]
     if len(runs) < RUNS or any(not eq.runs[i].has >= MEASURED for i in runs):
         return None
-    speed = np.array([np.mean(np.concatenate([p.omega_m for p in eq.runs[i].pieces])) for i in runs]) / eq.runs[0].ratio
+    speed = np.array([mean_speed(eq.runs[i]) for i in runs]) / eq.runs[0].ratio
     taken_off = s.value("compliance") * np.array([torque_zero(s, i) for i in runs])
     zeros = np.array([offset(s, i, "A") for i in runs]) + taken_off
     z = np.stack([np.ones(speed.size), speed], 1)

@@ -15,6 +15,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, offset
+from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC
 from rig.model.effect import MEASURED, Array
 
@@ -126,7 +127,7 @@ def foretold(z: Array, there: Array, zeros: Array) -> tuple[Array, Array, float]
 
 def rivals(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
     """RMS left of the zeros by their other reasons: speed and torque with their sizes, and a step at any time."""
-    speed = np.array([np.mean(np.concatenate([p.omega_m for p in eq.runs[i].pieces])) for i in runs])
+    speed = np.array([mean_speed(eq.runs[i]) for i in runs])
     torque = np.array([eq.runs[i].mean_torque for i in runs])
     found = []
     for x in (speed, torque):

@@ -17,6 +17,7 @@ from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import offset
 from rig.analysis.tracing.rest.drifting_zeros import foretold
+from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.quantiles import Z95
 from rig.core.units import RPM
 from rig.model.effect import Array
@@ -58,7 +59,7 @@ def uneven_drag(s: Solution, fitted: Sequence[int], unseen: Sequence[int], floor
     the `floor` [N·m], or where hardly any run turns fast the other way."""
     eq = s.design.eq
     mine, others = (_one_way(eq, runs) for runs in (fitted, unseen))
-    speed, later = (np.array([_speed(eq, i) for i in runs]) for runs in (mine, others))
+    speed, later = (np.array([mean_speed(eq.runs[i]) for i in runs]) for runs in (mine, others))
     if speed.size < FITTED or later.size < UNSEEN:
         return None
     fast = np.abs(speed) > HALF * np.abs(speed).max()
@@ -82,12 +83,7 @@ def uneven_drag(s: Solution, fitted: Sequence[int], unseen: Sequence[int], floor
 def _one_way(eq: Equations, runs: Sequence[int]) -> list[int]:
     """Those in which the motor turned freely, one way."""
     free = [i for i in runs if (i, "M") in eq.rows and not eq.runs[i].locked]
-    return [i for i in free if abs(_speed(eq, i)) > ONE_WAY * eq.runs[i].turning]
-
-
-def _speed(eq: Equations, run: int) -> float:
-    """Mean, with its sign, rad/s."""
-    return float(np.mean(np.concatenate([p.omega_m for p in eq.runs[run].pieces])))
+    return [i for i in free if abs(mean_speed(eq.runs[i])) > ONE_WAY * eq.runs[i].turning]
 
 
 def _friction(speed: Array) -> Array:

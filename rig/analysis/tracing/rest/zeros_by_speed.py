@@ -27,6 +27,7 @@ from rig.analysis.tracing.rest.drifting_zeros import (
     times,
 )
 from rig.analysis.tracing.rest.levels import LEVELS, levels
+from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC
 from rig.model.effect import MEASURED, Array
 
@@ -82,7 +83,7 @@ def _curve(speed: Array) -> Array:
 
 def _others(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
     """RMS left of the zeros by what else may shift them: the way, a torque, a drift of any time constant."""
-    way = np.array([np.mean(np.concatenate([p.omega_m for p in eq.runs[i].pieces])) for i in runs])
+    way = np.array([mean_speed(eq.runs[i]) for i in runs])
     torque = np.array([eq.runs[i].mean_torque for i in runs])
     since = times(eq, runs)
     made = [np.stack([np.ones(x.size), x], 1) for x in (way, torque)]

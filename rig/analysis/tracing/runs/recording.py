@@ -133,6 +133,11 @@ def read_by_any(runs: Sequence[Recording]) -> frozenset[str]:
     return frozenset().union(*(run.has for run in runs))
 
 
+def mean_speed(run: Recording) -> float:
+    """Of the motor over the whole run, rad/s: of a run that goes as far forth as back, zero."""
+    return float(np.mean(np.concatenate([piece.omega_m for piece in run.pieces])))
+
+
 def mean_way(run: Recording) -> float:
     """1 or −1 of a motor that turned one way all the time, 0 of one that went as far forth as back."""
     return float(np.mean(np.concatenate([piece.way for piece in run.pieces])))
