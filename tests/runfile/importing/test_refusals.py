@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import platform
+import time
 from typing import Any
 
 import numpy as np
@@ -231,7 +233,8 @@ def test_what_a_kill_leaves_is_no_run_for_any_verb(foreign: Foreign, monkeypatch
 
 def test_the_next_import_sweeps_what_a_killed_one_left_and_nothing_else(foreign: Foreign) -> None:
     kept = foreign.imported(foreign.file()).path
-    about = json.loads((kept / "manifest.json").read_text())
+    whole = json.loads((kept / "manifest.json").read_text())
+    about = whole | {"status": "recording"}
     day, here = kept.parent, platform.node()
     gone = {"pid": 2**22 - 1, "started": 1, "host": here}
     left = {
@@ -239,10 +242,14 @@ def test_the_next_import_sweeps_what_a_killed_one_left_and_nothing_else(foreign:
         ".0147-alive": about | {"process": this_process()},
         ".0147-elsewhere": about | {"process": gone | {"host": "another"}},
         ".0147-no-import": {k: v for k, v in about.items() if k != "import"} | {"process": gone},
+        ".0147-being-named": whole,
+        ".0147-never-named": whole,
     }
     for name, manifest in left.items():
         (day / name).mkdir()
         (day / name / "manifest.json").write_text(json.dumps(manifest))
     (day / ".0147-nothing").mkdir()
+    os.utime(day / ".0147-never-named", (0.0, time.time() - 4000.0))
     again = foreign.imported(foreign.file(), MAPPING.replace("SN7", "SN8")).path
-    assert {path.name for path in day.iterdir()} == {*left, ".0147-nothing", kept.name, again.name} - {".0147-killed"}
+    stay = {*left, ".0147-nothing", kept.name, again.name} - {".0147-killed", ".0147-never-named"}
+    assert {path.name for path in day.iterdir()} == stay

@@ -18,8 +18,8 @@ from scipy.special import fdtrc
 from rig.analysis.tracing.fit.channels import CHANNEL
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.drifting_zeros import PLAINER, constants, falling, foretold
-from rig.analysis.tracing.rest.joined import Index, rest
-from rig.analysis.tracing.rest.levels import FRICTION, Runs, left_by_runs
+from rig.analysis.tracing.rest.joined import Index, Rest
+from rig.analysis.tracing.rest.levels import Runs, left_by_runs
 from rig.model.effect import Array
 
 UNEVEN: Final = 0.3  # more rows one way than the other, over all: a slow run that ends on its way is as good
@@ -51,16 +51,14 @@ class ForAWhile:
         )
 
 
-def for_a_while(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> ForAWhile | None:
-    """Of residuals `e` of all runs, fitted or not; None where they have no such while."""
-    found = [_in_channel(eq, e, floors, channel) for channel in FRICTION]
+def for_a_while(eq: Equations, rests: Mapping[str, Rest], floors: Mapping[Key, float]) -> ForAWhile | None:
+    """Of what runs that turn leave, fitted or not, by channel; None where they have no such while."""
+    found = [_in_channel(eq, channel, r, floors) for channel, r in rests.items()]
     return max((one for one in found if one is not None), key=lambda one: one.share, default=None)
 
 
-def _in_channel(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], channel: str) -> ForAWhile | None:
-    turning = {key: x for key, x in e.items() if not eq.runs[key[0]].locked}
-    r = rest(eq, turning, floors, channel, beside=False) if eq.timed else None
-    if r is None:
+def _in_channel(eq: Equations, channel: str, r: Rest, floors: Mapping[Key, float]) -> ForAWhile | None:
+    if not eq.timed:
         return None
     runs = left_by_runs(r, UNEVEN)
     found = level_for_a_while(runs)
@@ -68,7 +66,8 @@ def _in_channel(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, floa
         return None
     inside, size, share = found
     pieces = [piece for i in runs.number[inside] for piece in eq.runs[i].pieces]
-    floor = float(np.median([floors[key] for key in turning if key[1] == channel]))
+    turned = np.unique(r.run)
+    floor = float(np.median([floors[int(i), channel] for i in turned]))
     return ForAWhile(
         channel, size * floor, min(float(p.t[0]) for p in pieces), max(float(p.t[-1]) for p in pieces), share
     )

@@ -43,18 +43,22 @@ class Runs:
     number: Index
 
 
-def friction_by_speed(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> Home | None:
-    """Where residuals `e`, of all runs, fitted or not, have the same left at one speed beyond what runs at that speed
-    differ by; None where they have not."""
-    found = [_in_channel(eq, e, floors, channel) for channel in FRICTION]
+def of_turning(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float]) -> dict[str, Rest]:
+    """What residuals `e` of runs that turn leave in the channels in which friction stands, runs joined; without those
+    that were not measured."""
+    turning = {key: x for key, x in e.items() if not eq.runs[key[0]].locked}
+    joined = {channel: rest(eq, turning, floors, channel, beside=False) for channel in FRICTION}
+    return {channel: r for channel, r in joined.items() if r is not None}
+
+
+def friction_by_speed(rests: Mapping[str, Rest]) -> Home | None:
+    """Where the rests of runs that turn, fitted or not, by channel, have the same left at one speed beyond what runs at
+    that speed differ by; None where they have not."""
+    found = [_in_channel(channel, r) for channel, r in rests.items()]
     return max((home for home in found if home is not None), key=lambda home: home.share, default=None)
 
 
-def _in_channel(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], channel: str) -> Home | None:
-    turning = {key: x for key, x in e.items() if not eq.runs[key[0]].locked}
-    r = rest(eq, turning, floors, channel, beside=False)
-    if r is None:
-        return None
+def _in_channel(channel: str, r: Rest) -> Home | None:
     runs = left_by_runs(r)
     level = levels(runs.speed)
     share = between(runs.left, level)

@@ -18,7 +18,8 @@ from rig.analysis.tracing.rest.foretold import smooth_term
 from rig.analysis.tracing.rest.hidden_order import WHOLE_ORDER, hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
-from rig.analysis.tracing.rest.levels import friction_by_speed
+from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.rest.levels import friction_by_speed, of_turning
 from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.same_spring import same_spring
 from rig.analysis.tracing.rest.ticking import largest, ticking
@@ -39,8 +40,7 @@ def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
     return (
         _in_the_floor(p, s, after, floors)
         or _in_the_spring(p, s, after)
-        or _for_a_while(p, s, after, floors)
-        or _at_one_speed(p, s, after, floors)
+        or _in_friction(p, s, after, floors)
         or _nearly_loud(p, s, after, floors)
         or _in_one_run(p, s)
         or _in_lock_tests(p, s, after)
@@ -97,24 +97,22 @@ def _in_the_spring(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Conc
     return Conclusion(verdict, None, ("time",), along("time"))
 
 
-def _for_a_while(
+def _in_friction(
     p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]
 ) -> Conclusion | None:
-    """No run has more left than its floor, but all runs of a while have the same more; None where they have not."""
-    left = {key: s.residual(key) for key in s.keys}
-    found = for_a_while(p.eq, {**left, **after}, {**floors, **p.held_out.floors})
-    if found is None:
-        return None
-    verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, found.sentence())
-    return Conclusion(verdict, None, ("time",), along("time"))
+    """No run has more left than its floor, but all runs of a while, or at one speed, have the same more; None where
+    they have not."""
+    left, floors = {key: s.residual(key) for key in s.keys}, {**floors, **p.held_out.floors}
+    rests = of_turning(p.eq, {**left, **after}, floors)
+    found = for_a_while(p.eq, rests, floors)
+    if found is not None:
+        verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, found.sentence())
+        return Conclusion(verdict, None, ("time",), along("time"))
+    return _at_one_speed(rests)
 
 
-def _at_one_speed(
-    p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]
-) -> Conclusion | None:
-    """No run has more left than its floor, but all runs at one speed have the same; None where they have not."""
-    left = {key: s.residual(key) for key in s.keys}
-    home = friction_by_speed(p.eq, {**left, **after}, {**floors, **p.held_out.floors})
+def _at_one_speed(rests: Mapping[str, Rest]) -> Conclusion | None:
+    home = friction_by_speed(rests)
     if home is None:
         return None
     sentence = (

@@ -10,7 +10,7 @@ from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.levels import friction_by_speed
+from rig.analysis.tracing.rest.levels import friction_by_speed, of_turning
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import MISSING
@@ -66,7 +66,7 @@ def is_loud(at: HeldOut, s: Solution, held: Design) -> bool:
 
 def by_speed(p: Prepared, s: Solution, held: Design) -> bool:
     left = {key: s.residual(key) for key in s.keys} | p.held_out.residuals(s, held)
-    return friction_by_speed(p.eq, left, {**p.floors, **p.held_out.floors}) is not None
+    return friction_by_speed(of_turning(p.eq, left, {**p.floors, **p.held_out.floors})) is not None
 
 
 def left_over(p: Prepared, kept: Kept) -> float:
