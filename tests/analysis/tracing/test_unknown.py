@@ -14,7 +14,8 @@ from rig.analysis.tracing.rest.lines import SENSES, best_order
 from rig.analysis.tracing.rest.past import since_turned
 from rig.analysis.tracing.rest.shares import rising
 from rig.analysis.tracing.rest.sudden import turned_since
-from rig.analysis.tracing.rest.unknown import _of_the_output, homes
+from rig.analysis.tracing.rest.unknown import homes
+from rig.analysis.tracing.rest.whose_order import of_the_output
 from rig.analysis.tracing.rest.worn import worn_off
 from rig.model.memory import play
 
@@ -389,13 +390,13 @@ def test_what_a_torque_sensor_before_the_output_does_not_see_is_the_motors(
     motor = np.linspace(0.0, 900.0, 4000)
     at = {"motor_angle": motor, "load_angle": motor / 50.0}
     r = Rest(np.ones(4000), np.zeros(4000), at, DT, np.zeros((4000, 0)), np.zeros((0, 0)), sensed=sensed)
-    found = _of_the_output(Home("motor_angle", channel, 1.0, order=0.4), r)
+    found = of_the_output(Home("motor_angle", channel, 1.0, order=0.4), r)
     assert found.coordinate == expected
 
 
-@pytest.mark.parametrize(("order", "expected"), [(3.46, "load_angle"), (9.46, "motor_angle")])
-def test_more_teeth_than_the_gear_has_twice_over_are_none_of_the_outputs(order: float, expected: str) -> None:
+@pytest.mark.parametrize(("order", "expected"), [(3.46, "load_angle"), (9.46, "motor_angle"), (1.5, "motor_angle")])
+def test_neither_too_many_teeth_nor_two_turns_of_the_motor_are_the_outputs(order: float, expected: str) -> None:
     motor = np.linspace(0.0, 900.0, 4000)
     at = {"motor_angle": motor, "load_angle": motor / 50.0}
     r = Rest(np.ones(4000), np.zeros(4000), at, DT, np.zeros((4000, 0)), np.zeros((0, 0)))
-    assert _of_the_output(Home("motor_angle", "A", 1.0, order=order), r).coordinate == expected
+    assert of_the_output(Home("motor_angle", "A", 1.0, order=order), r).coordinate == expected

@@ -20,12 +20,12 @@ from rig.analysis.tracing.rest.joined import rest
 from rig.analysis.tracing.rest.lines import SENSES, best_order
 from rig.analysis.tracing.rest.readings import in_columns, nothing
 from rig.analysis.tracing.rest.unknown import MOST
+from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER, every_second_turn, ratio_of
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.thresholds import LOUD_LINE
 from rig.analysis.tracing.workers import each
 from rig.model.effect import Array
 
-WHOLE_ORDER: Final = 0.05  # how far from a whole number
 SOME: Final = 0.5  # of the runs: with fewer that were repeated, neighbouring turns make the floor of most
 PLAIN: Final = LOUD_LINE / 2  # of what is left of the fitted runs, what one half of them must foretell of the other
 NOTHING: Final = 0.01  # mean square over the floor's, of what is rounding alone: made-up numbers have no noise
@@ -62,8 +62,9 @@ def _in_channel(
     r = train.thinned(MOST)
     h = Halves(r, folds(r))
     tried = [best_order(h, "motor_angle", channel, sense) for sense in SENSES]
-    # both angles are nearly one: what comes back with a turn of the output comes back a whole number of times in it
-    tried += [home for sense in SENSES if _is_whole(home := best_order(h, "load_angle", channel, sense))]
+    # what comes back with a turn of the output comes back a whole number of times in it
+    ratio = ratio_of(r)
+    tried += [home for sense in SENSES if _is_its_own(home := best_order(h, "load_angle", channel, sense), ratio)]
     enough = PLAIN * float(np.mean(r.e**2)) / h.total
     plain = [home for home in tried if home is not None and home.share > enough]
     if not plain:  # in most campaigns: the unseen runs need not be asked
@@ -79,5 +80,8 @@ def _in_channel(
     return [replace(home, share=1.0 - left(home) / max(bare, 1e-300)) for home in plain]
 
 
-def _is_whole(home: Home | None) -> bool:
-    return home is not None and home.order is not None and abs(home.order - round(home.order)) < WHOLE_ORDER
+def _is_its_own(home: Home | None, ratio: float) -> bool:
+    """Whether an order of the output's angle is whole, and none of the motor's."""
+    if home is None or home.order is None or every_second_turn(home.order, ratio):
+        return False
+    return abs(home.order - round(home.order)) < WHOLE_ORDER

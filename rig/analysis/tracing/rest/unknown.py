@@ -18,11 +18,11 @@ from rig.analysis.tracing.rest.lines import BY_THE_CLOCK, SENSES, best_order, by
 from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
 from rig.analysis.tracing.rest.settling import settled
 from rig.analysis.tracing.rest.sudden import since, turned_since
+from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER, of_the_output
 from rig.analysis.tracing.rest.worn import worn_off
 from rig.analysis.tracing.thresholds import ALL, PLAIN_ENOUGH
 from rig.model.effect import Array
 
-WHOLE_ORDER = 0.05  # how near a whole number: chance is there once in ten times
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 BENT = 0.2  # of the excess, what a channel must keep beside a baseline of its own to be where the rest lives
 FOLLOWS = 0.25  # of what another coordinate leaves, what a step may leave that is said before it
@@ -59,7 +59,7 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out += [Home(name, channel, share(h, in_columns(of)), read=in_columns(of), late=True) for name, of in SMOOTH]
     for name, sense in itertools.product(("motor_angle", "load_angle"), SENSES):
         if (found := best_order(h, name, channel, sense)) is not None:
-            out.append(_of_the_way(_of_the_output(found, r), sense))
+            out.append(_of_the_way(of_the_output(found, r), sense))
     if (gone := _wound(h, channel)) is not None:
         out.append(gone)
     out += [*worn_off(h, channel), *settled(h, channel)]
@@ -125,26 +125,6 @@ def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
 def _drive(r: Rest) -> Array:
     """What a drive makes too much of as its gain comes and goes is a part of its torque."""
     return np.nan_to_num(r.at["motor_torque"])
-
-
-def _of_the_output(found: Home, r: Rest) -> Home:
-    """An order of the motor that is none of its own, but a whole one of the output's turn, and no lobe of the wave
-    generator seen from the flexspline: the teeth of something on the output, which are no more than the gear's own
-    twice over. What a torque sensor before the output does not see is on the motor: a belt goes round less than once a
-    turn."""
-    if found.channel == "M" and r.sensed:
-        return found
-    load, motor = r.at["load_angle"], r.at["motor_angle"]
-    known = np.isfinite(load) & np.isfinite(motor)
-    if found.coordinate != "motor_angle" or not found.order or not known.any() or np.ptp(load[known]) == 0:
-        return found
-    ratio = float(np.polyfit(load[known], motor[known], 1)[0])
-    own, whole, lobes = found.order, found.order * ratio, found.order * ratio / (ratio + 1)
-    off = [abs(x - round(x)) for x in (own, whole, lobes)]
-    few = abs(whole) < 2 * 2 * (abs(ratio) + 1) + WHOLE_ORDER
-    if few and off[1] < WHOLE_ORDER and off[0] > WHOLE_ORDER / 2 and off[2] > WHOLE_ORDER / 2:
-        return replace(found, coordinate="load_angle", order=float(round(whole)))
-    return found
 
 
 def _at_once(h: Halves, channel: str, others: Sequence[Home], most: float) -> list[Home]:

@@ -15,7 +15,7 @@ from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
 from rig.analysis.tracing.rest.for_a_while import for_a_while
 from rig.analysis.tracing.rest.foretold import smooth_term
-from rig.analysis.tracing.rest.hidden_order import WHOLE_ORDER, hidden_order
+from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.rest.in_the_floor import in_the_floor
 from rig.analysis.tracing.rest.joined import Rest
@@ -24,6 +24,7 @@ from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.same_spring import same_spring
 from rig.analysis.tracing.rest.ticking import largest, ticking
 from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER
 from rig.analysis.tracing.runs.alike import alike, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.selection.conclusion import Conclusion
