@@ -69,7 +69,7 @@ def test_a_long_list_of_runs_says_how_many_more_there_are_and_where_they_stand()
 
 def test_where_no_fitted_run_turns_freely_every_one_that_does_is_outside() -> None:
     said = found(prepared([run(0.0, 60.0, locked=True)], [run(120.0)])).sentence()
-    assert "motor speed none fitted, 120 to 120 rpm held out" in said
+    assert "(mean motor speed none fitted, 120 rpm there)" in said
 
 
 def test_the_sentence_names_runs_numbers_and_what_they_do_not_determine() -> None:
@@ -78,10 +78,18 @@ def test_the_sentence_names_runs_numbers_and_what_they_do_not_determine() -> Non
     damping = parameter("B_sp", 1.0, 2.0, "N·m·s/rad")  # of either sign, for filters lag
     said = found(p, drag, stiff, damping).sentence()
     assert said == (
-        "2 of 2 held-out runs (at-120, at-400) lie outside what the 2 fitted runs (at-10, at-11) cover (motor speed "
-        "10 to 11 rpm fitted, 120 to 400 rpm held out; shaft torque -4.9 to 4.9 N·m fitted, -4.9 to 4.9 N·m held out), "
-        "and the fitted runs do not determine B_l (-2.32 N·m·s/rad, 95 % -3.32 to -1.32), which no gear has below zero."
+        "2 of 2 held-out runs (at-120, at-400) lie outside what the 2 fitted runs (at-10, at-11) cover (mean motor "
+        "speed 10 to 11 rpm fitted, 120 to 400 rpm there), and the fitted runs do not determine B_l (-2.32 "
+        "N·m·s/rad, 95 % -3.32 to -1.32), which no gear has below zero."
     )
+
+
+def test_of_a_torque_beyond_the_sentence_says_the_torque_of_the_run_it_names() -> None:
+    p = prepared([run(10.0), run(300.0)], [run(390.0, 4.0), run(0.0, 50.0, locked=True)])
+    said = found(p).sentence()
+    assert "1 of 2 held-out runs (at-0) lies outside" in said
+    assert "(shaft torque, but for a hundredth at each end, -4.9 to 4.9 N·m fitted, -49 to 49 N·m there)" in said
+    assert "rpm" not in said
 
 
 UNKNOWN = Conclusion(

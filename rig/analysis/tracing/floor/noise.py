@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS, WHOLE
+from rig.analysis.tracing.fit.channels import CHANNEL, CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.friction import Scattering, evened
@@ -26,7 +26,8 @@ from rig.model.effect import Array
 FINEST = 1e-5  # of what a channel swings by, RMS: no rig repeats better, and numbers made up without noise do
 OF_A_COUNT = 1 / (4 * 12**0.5)  # its rounding, and what the low-pass leaves of that at least
 NEVER_COMPARED = "lock tests alone, none of them done twice: all that is left counts as noise"
-TOO_SHORT = "one run of too few turns to compare them: all that is left counts as noise"
+TOO_SHORT = "too few turns to compare them: all that is left counts as noise"
+A_FEW = 2  # runs: where none of more can be compared, what is rough in them has to do, or nothing would be found
 BY_COUNTS = ", which is less than the rounding of the readings leaves: that is taken"
 LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
 
@@ -44,6 +45,16 @@ class Measured:
     apart: frozenset[Key] = frozenset()  # whose repeats differ by more than noise: no other condition's floor
     friction: Scattering = field(default_factory=Scattering)
     interval: dict[str, tuple[float, float]] = field(default_factory=dict)  # 95 %, of the RMS of a channel
+
+    def never_compared(self) -> list[str]:
+        """What is said where the floor of a channel is all that was left in it."""
+        names = [CHANNEL[c].name for c, how in self.how.items() if how == TOO_SHORT]
+        if not names:
+            return []
+        return [
+            f"The floor (of {', '.join(names)}) is all that the baseline leaves: no turn or stroke could be compared "
+            "with another, and an effect of that size is not seen. Longer runs, or the same once more, tell more."
+        ]
 
 
 def guess(eq: Equations) -> Noise:
@@ -81,7 +92,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         if not found:
             if (left := _locked_alone(eq, e, channel)) is not None:
                 sigma[channel], how[channel] = max(sigma[channel], left), NEVER_COMPARED
-            elif (left := _of_one_run(eq, e, channel)) is not None:
+            elif (left := _of_a_few(eq, e, channel)) is not None:
                 sigma[channel], how[channel] = max(sigma[channel], left), TOO_SHORT
             continue
         if channel == "M":
@@ -123,12 +134,12 @@ def _locked_alone(eq: Equations, e: Mapping[Key, Array], channel: str) -> float 
     return _rms(e, keys)
 
 
-def _of_one_run(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | None:
-    """RMS of all that is left of a channel where there is one run alone, and its output turned; None elsewhere. What is
-    rough in it is a part of its noise, and the whole would be many times that."""
+def _of_a_few(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | None:
+    """RMS of all that is left of a channel where there is a run alone, or one and the proof before it, and the output
+    turned; None elsewhere. What is rough in them is a part of their noise, and the whole would be many times that."""
     keys = [key for key in e if key[1] == channel]
     turning = [run for run in eq.runs if run.procedure != "standstill"]
-    if not keys or len({whole_run(run.name) for run in turning}) > 1 or any(run.locked for run in turning):
+    if not keys or len({whole_run(run.name) for run in turning}) > A_FEW or any(run.locked for run in turning):
         return None
     return _rms(e, keys)
 

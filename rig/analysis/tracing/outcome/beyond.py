@@ -29,7 +29,8 @@ NAMED: Final = 3  # runs
 
 @dataclass(frozen=True)
 class Range:
-    """Speeds of the motor [rpm] of runs that turn freely, and torques [N·m], least and largest."""
+    """Mean speeds of the motor [rpm] of runs that turn freely, and torques [N·m], least and largest; nan where there
+    are none."""
 
     speed: tuple[float, float]
     torque: tuple[float, float]
@@ -44,7 +45,7 @@ class Beyond:
     outside: tuple[int, ...]
     names: tuple[str, ...]  # of the same
     covered: Range
-    asked: Range
+    asked: Range  # by them, of what lies outside
     open: tuple[Parameter, ...]
 
     def sentence(self) -> str:
@@ -52,9 +53,7 @@ class Beyond:
         said = (
             f"{len(self.outside)} of {self.held_out} held-out runs ({_some(self.names)}) "
             f"{'lies' if len(self.outside) == 1 else 'lie'} outside what the "
-            f"{len(self.fitted)} fitted runs ({_some(self.fitted)}) cover (motor speed "
-            f"{_both(self.covered.speed, self.asked.speed, 'rpm')}; shaft torque "
-            f"{_both(self.covered.torque, self.asked.torque, 'N·m')})"
+            f"{len(self.fitted)} fitted runs ({_some(self.fitted)}) cover ({'; '.join(self._what())})"
         )
         more = any(len(names) > NAMED for names in (self.names, self.fitted))
         listed = " All runs stand in the report's list of runs and under `runs` in trace.json." if more else ""
@@ -64,6 +63,14 @@ class Beyond:
             f"{said}, and the fitted runs do not determine {in_words(self.open)}, which no gear has below zero.{listed}"
         )
 
+    def _what(self) -> list[str]:
+        covered, asked, out = self.covered, self.asked, []
+        if np.isfinite(asked.speed[0]):
+            out.append(f"mean motor speed {_both(covered.speed, asked.speed, 'rpm')}")
+        if np.isfinite(asked.torque[0]):
+            out.append(f"shaft torque, but for a hundredth at each end, {_both(covered.torque, asked.torque, 'N·m')}")
+        return out
+
 
 def _some(names: Sequence[str]) -> str:
     """The first of them, and how many more: the page lists every run, and `runs` in trace.json."""
@@ -72,17 +79,25 @@ def _some(names: Sequence[str]) -> str:
 
 
 def _both(covered: tuple[float, float], asked: tuple[float, float], unit: str) -> str:
-    fitted, held = (f"{lo:.3g} to {hi:.3g} {unit}" if np.isfinite(lo) else "none" for lo, hi in (covered, asked))
-    return f"{fitted} fitted, {held} held out"
+    fitted, held = (_range(lo, hi, unit) if np.isfinite(lo) else "none" for lo, hi in (covered, asked))
+    return f"{fitted} fitted, {held} there"
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    least, most = f"{low:.3g}", f"{high:.3g}"
+    return f"{least} {unit}" if least == most else f"{least} to {most} {unit}"
 
 
 def beyond(p: Prepared, baseline: Sequence[Parameter]) -> Beyond | None:
     """None where every held-out run lies within what was fitted."""
-    fitted, held = ([p.eq.runs[i] for i in some] for some in (p.split.fitted, p.held_out.runs))
-    covered, asked = reach(fitted), reach(held)
-    outside = tuple(i for i in p.held_out.runs if _is_outside(p.eq.runs[i], covered))
+    fitted, held = [p.eq.runs[i] for i in p.split.fitted], p.held_out.runs
+    covered = reach(fitted)
+    faster = [i for i in held if _turns_outside(p.eq.runs[i], covered)]
+    harder = [i for i in held if _is_loaded_outside(p.eq.runs[i], covered)]
+    outside = tuple(i for i in held if i in {*faster, *harder})
     if not outside:
         return None
+    asked = Range(reach([p.eq.runs[i] for i in faster]).speed, reach([p.eq.runs[i] for i in harder]).torque)
     names, far = tuple(run.name for run in fitted), tuple(p.eq.runs[i].name for i in outside)
     told = left_open([q for q in baseline if q.name != "B_sp"])  # which filters that lag make of either sign
     return Beyond(names, len(held), outside, far, covered, asked, told)
@@ -103,10 +118,12 @@ def _torques(run: Recording) -> tuple[float, float] | None:
     return (float(np.percentile(x, 1)), float(np.percentile(x, 99))) if x.size and "tau_l" in run.has else None
 
 
-def _is_outside(run: Recording, covered: Range) -> bool:
+def _turns_outside(run: Recording, covered: Range) -> bool:
     slow, fast = covered.speed
-    if not run.locked and not slow / FURTHER <= run.turning / RPM <= fast * FURTHER:  # where none is known too
-        return True
+    return not run.locked and not slow / FURTHER <= run.turning / RPM <= fast * FURTHER  # where none is known too
+
+
+def _is_loaded_outside(run: Recording, covered: Range) -> bool:
     (low, high), torques = covered.torque, _torques(run)
     if torques is None or not np.isfinite(low):
         return False

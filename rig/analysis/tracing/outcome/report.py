@@ -100,7 +100,12 @@ def report(
         law=laws_in(s) if beside.curves or conclusion.home is None else (),
         read=len(p.campaign.runs),
         left_out=p.campaign.left_out,
-        cannot=(*conclusion.cannot, *not_told(refitted, fitted_runs), *cannot(p.campaign.runs)),
+        cannot=(
+            *conclusion.cannot,
+            *not_told(refitted, fitted_runs),
+            *p.measured.never_compared(),
+            *cannot(p.campaign.runs),
+        ),
         curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
 

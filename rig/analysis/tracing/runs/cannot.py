@@ -98,7 +98,7 @@ def _alone(runs: Sequence[Recording]) -> list[str]:
         return ["One run only: what was held out is of the same run, so that nothing is known of what differs between "
                 "runs, conditions or days."]  # fmt: skip
     if all(len(group) == 1 for group in grouped(runs, range(len(runs)))):
-        return ["No condition was repeated: the floor is what neighbouring turns or strokes of one run differ by, and "
+        return ["No condition was repeated: the floor is what is seen within single runs, and "
                 "what changes from run to run looks like an effect."]  # fmt: skip
     return []
 
@@ -136,7 +136,9 @@ def _one_speed(has: frozenset[str], runs: Sequence[Recording]) -> list[str]:
     if "t" not in has or not one_speed(runs):
         return []
     speeds = [run.turning / RPM for run in runs if not run.locked]
-    return [f"All runs turn at about {np.mean(speeds):.3g} rpm: constant friction, damping, falling friction and drag "
+    least, most = f"{min(speeds):.3g}", f"{max(speeds):.3g}"
+    about = least if least == most else f"{least} to {most}"
+    return [f"All runs turn at about {about} rpm: constant friction, damping, falling friction and drag "
             "cannot be told apart, nor a real kinematic error from an encoder's."]  # fmt: skip
 
 
