@@ -73,13 +73,17 @@ def _in_channel(eq: Equations, channel: str, r: Rest, floors: Mapping[Key, float
     )
 
 
+def what_a_baseline_takes(runs: Runs) -> Array:
+    """Columns of what damping and a zero have taken on of friction that is another one by the run, (k, 4)."""
+    return np.stack([np.ones(runs.left.size), runs.speed, runs.way, runs.speed * runs.way], 1)
+
+
 def level_for_a_while(runs: Runs) -> tuple[Index, float, float] | None:
     """Which of the runs are in the while, by how much more they have, over the floor, and the share of what runs differ
     by; None where there is none, or what falls with time explains them as well."""
     order = np.argsort(runs.since)
-    left, speed, way, since = (x[order] for x in (runs.left, runs.speed, runs.way, runs.since))
+    left, since, plain = runs.left[order], runs.since[order], what_a_baseline_takes(runs)[order]
     k = left.size
-    plain = np.stack([np.ones(k), speed, way, speed * way], 1)  # what damping and a zero have taken on of it
 
     def beside(x: Array) -> tuple[float, float]:
         """The coefficient of `x` (k,), and RMS of what is left."""

@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
+from rig.analysis.tracing.rest.comes_and_goes import comes_and_goes
 from rig.analysis.tracing.rest.for_a_while import for_a_while
 from rig.analysis.tracing.rest.foretold import smooth_term
 from rig.analysis.tracing.rest.hidden_order import hidden_order
@@ -101,14 +102,16 @@ def _in_the_spring(p: Prepared, s: Solution, after: Mapping[Key, Array]) -> Conc
 def _in_friction(
     p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]
 ) -> Conclusion | None:
-    """No run has more left than its floor, but all runs of a while, or at one speed, have the same more; None where
-    they have not."""
+    """No run has more left than its floor, but all runs of a while, or at one speed, have the same more, or it comes
+    and goes; None where they have not."""
     left, floors = {key: s.residual(key) for key in s.keys}, {**floors, **p.held_out.floors}
     rests = of_turning(p.eq, {**left, **after}, floors)
-    found = for_a_while(p.eq, rests, floors)
-    if found is not None:
+    if (found := for_a_while(p.eq, rests, floors)) is not None:
         verdict = Verdict(Status.UNKNOWN, (), (), "time", None, None, found.sentence())
         return Conclusion(verdict, None, ("time",), along("time"))
+    if (wave := comes_and_goes(p.eq, rests, floors)) is not None:
+        verdict = Verdict(Status.UNKNOWN, (), (), "time_periodic", None, wave.frequency_hz, wave.sentence())
+        return Conclusion(verdict, None, ("time_periodic",), along("time_periodic"))
     return _at_one_speed(rests)
 
 
