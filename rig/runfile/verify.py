@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from rig.core.channels import Flag
 from rig.core.drivetrain import RATIOS
-from rig.core.errors import HdrigError
+from rig.core.errors import HdrigError, said_of
 from rig.core.numbers import number
 from rig.runfile import archive, manifest
 from rig.runfile.columns import Array
@@ -36,7 +36,10 @@ def verify(folder: Path) -> list[Finding]:
     """Everything worth saying about a run; no "error" among it means the promises are kept. Raises UsageError when it
     is no run folder at all.
     """
-    about = manifest.read(folder)
+    try:
+        about = manifest.read(folder)
+    except manifest.Damaged as damage:
+        return [Finding("error", "manifest", said_of(folder, damage))]
     findings = [*_status(folder, about), *_hashes(folder, about), *_read_only(folder, about)]
     findings += [Finding("error", "manifest", f"{manifest.NAME}: {said}") for said in misfits(about)]
     odd = (*misfits_of_ours(about), *mistyped(about))

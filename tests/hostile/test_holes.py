@@ -68,7 +68,8 @@ def test_a_folder_of_samples_without_a_manifest_is_said(tmp_path: Path) -> None:
     (tmp_path / "odd" / "manifest.json").unlink()
     (tmp_path / "pictures").mkdir()
     found = read_campaign(tmp_path)
-    assert found.notes == ("odd was left out: it has samples and no manifest.json.",)
+    [said] = found.notes
+    assert said.startswith("odd was left out: it has samples and no manifest.json; hdrig recover makes it anew")
 
 
 def test_a_reason_that_many_runs_share_is_said_once(tmp_path: Path) -> None:
