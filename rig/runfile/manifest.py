@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from rig.core.errors import HdrigError, UsageError, said_of
+from rig.core.errors import HdrigError, UsageError, of_place, said_of
 from rig.core.numbers import number
 from rig.core.regular import regular
 from rig.runfile.remains import SAMPLES, hold_samples
@@ -227,11 +227,11 @@ def sync_folder(folder: Path) -> None:
 
 @contextlib.contextmanager
 def told(kind: type[HdrigError], what: str) -> Iterator[None]:
-    """Turn an OSError into a sentence of `kind`: "<what>: No space left on device"."""
+    """Turn an OSError into a sentence of `kind`: "<what>: No space left on device"; its exit code is as in `of_place`."""
     try:
         yield
     except OSError as error:
-        raise kind(f"{what}: {error.strerror or error}") from error
+        raise of_place(kind(f"{what}: {error.strerror or error}"), error) from error
 
 
 def utc_now() -> str:

@@ -31,7 +31,7 @@ from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refus
 from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.runs.weights import other_weights, refuse_odd_torques
 from rig.analysis.tracing.workers import WORKERS
-from rig.core.errors import DataError, HdrigError, UsageError, said_of
+from rig.core.errors import DataError, Exit, HdrigError, UsageError, said_of
 from rig.model.effect import Moved
 from rig.runfile.copies import once
 from rig.runfile.doubt import changed
@@ -159,7 +159,7 @@ def _open(places: list[Path]) -> tuple[list[Run], list[Said]]:
             opened.append(Run.open(place))
         except HdrigError as error:
             why = str(error).replace(f"{place}/", "").replace(str(place), "it")
-            out.append(left_out(place.name, why, isinstance(error, DataError)))
+            out.append(left_out(place.name, why, error.exit is Exit.INCOMPLETE))
     return opened, out
 
 
