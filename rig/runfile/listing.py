@@ -45,7 +45,7 @@ def runs_in(path: Path, unread: Unread = passed_by) -> list[Path]:
 
 
 def run_folders(root: str, depth: int = 3, unread: Unread = passed_by) -> Iterator[str]:
-    """Run folders, as `is_run` has it, down to ./runs/date/run, by name, links after folders; hidden ones are passed by."""
+    """Run folders, as `is_run` has it, down to ./runs/date/run, by name, links last; hidden ones are passed by."""
     try:
         entries = os.scandir(root)
     except OSError as error:

@@ -227,7 +227,7 @@ def sync_folder(folder: Path) -> None:
 
 @contextlib.contextmanager
 def told(kind: type[HdrigError], what: str) -> Iterator[None]:
-    """Turn an OSError into a sentence of `kind`: "<what>: No space left on device"; its exit code is as in `of_place`."""
+    """Turn an OSError into a sentence of `kind`: "<what>: No space left on device"; exit code as in `of_place`."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""A damaged manifest.json, or one that is gone → a minimal one of what bench.toml and the samples say; the damaged file stays beside it."""
+"""A manifest.json damaged or gone → a minimal one of what bench.toml and the samples say; a damaged file stays."""
 
 from __future__ import annotations
 

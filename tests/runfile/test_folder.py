@@ -183,6 +183,6 @@ def test_a_killed_process_that_nobody_has_reaped_is_dead() -> None:
     ],
 )
 def test_a_place_nobody_may_use_ends_with_the_code_of_one(number: int, kind: type[HdrigError], code: Exit) -> None:
-    with pytest.raises(kind, match="^x cannot be opened: ") as refused, manifest.told(kind, "x cannot be opened"):
+    with pytest.raises(kind, match=r"^x cannot be opened: ") as refused, manifest.told(kind, "x cannot be opened"):
         raise OSError(number, os.strerror(number))
     assert refused.value.exit is code

@@ -31,7 +31,7 @@ from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refus
 from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.runs.weights import other_weights, refuse_odd_torques
 from rig.analysis.tracing.workers import WORKERS
-from rig.core.errors import DataError, Exit, HdrigError, UsageError, said_of
+from rig.core.errors import DataError, Exit, HdrigError, UsageError
 from rig.model.effect import Moved
 from rig.runfile.copies import once
 from rig.runfile.doubt import changed
@@ -158,8 +158,7 @@ def _open(places: list[Path]) -> tuple[list[Run], list[Said]]:
         try:
             opened.append(Run.open(place))
         except HdrigError as error:
-            why = str(error).replace(f"{place}/", "").replace(str(place), "it")
-            out.append(left_out(place.name, why, error.exit is Exit.INCOMPLETE))
+            out.append(_unopened(place, error))
     return opened, out
 
 
@@ -167,7 +166,13 @@ def _nameless(folder: Path, places: Sequence[Path]) -> list[Said]:
     """Folders beside the runs with samples that no manifest says anything of."""
     beside = sorted({folder, *(place.parent for place in places)})
     there = [p for parent in beside for p in sorted(parent.glob("[!.]*")) if is_nameless(p)]
-    return [left_out(p.name, said_of(p, Missing(p / "manifest.json"))) for p in there]
+    return [_unopened(p, Missing(p / "manifest.json")) for p in there]
+
+
+def _unopened(place: Path, error: HdrigError) -> Said:
+    """Why a folder is none of the runs; an `error` of a place that nobody may read is no damage."""
+    why = str(error).replace(f"{place}/", "").replace(str(place), "it")
+    return left_out(place.name, why, error.exit is Exit.INCOMPLETE)
 
 
 def _closed(folder: Path) -> list[Said]:
