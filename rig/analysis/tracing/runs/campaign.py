@@ -218,7 +218,8 @@ def _unfit(made: Recording) -> str:
     if made.locked and not made.input_locked and (why := _gave_way(made)):
         return why
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
-        return f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"
+        said = f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"
+        return "; ".join([said, *([why] if (why := odd_angles(made)) else [])])
     return ""
 
 
