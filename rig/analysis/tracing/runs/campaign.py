@@ -219,7 +219,8 @@ def _unfit(made: Recording) -> str:
         return why
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
         said = f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"
-        return "; ".join([said, *([why] if (why := odd_angles(made)) else [])])
+        odd = odd_angles(made)
+        return f"{said}; {odd}" if odd else said
     return ""
 
 
