@@ -19,6 +19,8 @@ from rig.core.errors import Exit
 from tests.campaign.plans import REST, campaign
 from tests.campaign.rigs import go_on, make
 
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("lost runs")]  # one campaign is made, for all of them
+
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Campaign]:

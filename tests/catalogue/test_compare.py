@@ -311,7 +311,7 @@ def test_a_figure_measured_at_unlike_speeds_is_not_called_by_one_of_them() -> No
 
 def test_one_run_alone_is_not_compared(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="given 1 run folder: expected two or more"):
-        compare([tmp_path])
+        compare([run(tmp_path, DAYS[0])])
 
 
 @pytest.mark.parametrize(

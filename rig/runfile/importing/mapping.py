@@ -19,16 +19,8 @@ SCHEMA = "hdrig.import/1"
 SHIPPED = Path(__file__).parent / "mappings"
 COUNTED = {"theta_m": "counts_m", "theta_l": "counts_l"}  # angles, and the counts they may come from
 SERIAL = 64  # characters of a gear's, as in a bench file: it is part of a folder's name
-CHECKS = (
-    "period",
-    "epoch",
-    "speed",
-    "ratio",
-    "torque",
-    "stiffness",
-    "file_unit",
-    "column",
-)  # plausibility an [accept] may waive
+CHECKS = ("period", "epoch", "speed", "ratio", "torque", "stiffness", "file_unit", "column")
+"""Plausibility that an [accept] may waive."""
 
 
 @dataclass(frozen=True)
