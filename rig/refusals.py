@@ -94,12 +94,12 @@ def refuse_mode(bench: Bench, procedure: Procedure) -> None:
         )
 
 
-def refuse_beyond_limits(bench: Bench, procedure: Procedure) -> None:
-    """Raises NotReady when the procedure asks for more than the bench allows, or for a loop that cannot hold it."""
+def refuse_beyond_limits(bench: Bench, procedure: Procedure, given: str = "torque") -> None:
+    """Raises NotReady when the procedure asks for more than the bench allows, or for a loop that cannot hold it; what
+    was `given`, by its name in TOLD, is told before what follows from it."""
     envelope = procedure.envelope(bench.setting(lambda text: None))
     reserved = ("shaft",) if procedure.output_locked else ("speed", "shaft")
-    by_torque_first = sorted(margins(bench, procedure), key=lambda margin: margin[0] != "torque")  # what was given
-    for what, asked, limit, unit, scale in by_torque_first:
+    for what, asked, limit, unit, scale in sorted(margins(bench, procedure), key=lambda margin: margin[0] != given):
         if asked > limit:
             wanted, allowed = f"{asked * scale:g} {unit}", f"{limit * scale:g} {unit}"
             said = envelope.loop_by if what == "loop" else envelope.reserve if what in reserved else ""

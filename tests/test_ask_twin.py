@@ -22,13 +22,15 @@ from sim.wire.reactor import Reactor
 from sim.wire.verbs import plant_verbs
 from tests.drivers.virtual import wired
 
+CARRIES = 45.0  # N·m
+
 
 @pytest.fixture
 def twin(tmp_path: Path) -> Iterator[Assembly]:
     """A twin whose command channel is `control` in the test's folder; one line a client."""
     assembly = wired().twin
     faults = fault_verbs(assembly, Reactor(assembly.agenda), {}, {})
-    own = plant_verbs(assembly, Reactor(assembly.agenda), faults["faults"])
+    own = plant_verbs(assembly, Reactor(assembly.agenda), faults["faults"], CARRIES)
     verbs = {**own, **faults, "help": lambda: describe(verbs)}
     door = socket.socket(socket.AF_UNIX)
     door.bind(str(tmp_path / "control"))
@@ -97,9 +99,12 @@ def test_values_are_told_with_their_units_and_an_error_code_as_a_run_says_it(
         assert re.search(rf"^  {key} +[0-9.e+-]+ {unit}$", said, re.M), key
 
 
-def test_a_weight_is_hung_by_its_number_alone(twin: Assembly, tmp_path: Path) -> None:
+def test_a_weight_is_hung_by_its_number_alone_and_told_with_its_unit(
+    twin: Assembly, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     twin.world.lock_output()
     assert ask(tmp_path, "hang", "-2.5") == 0
+    assert capsys.readouterr().out.endswith(": hang -2.5 N·m\n")
     assert twin.world.plant.tau_ext == -2.5
     assert ask(tmp_path, "hang", "0") == 0
     assert twin.world.plant.tau_ext == 0.0
@@ -137,7 +142,7 @@ def test_what_there_is_to_ask_for_is_told(twin: Assembly, tmp_path: Path, capsys
         (["hang", "inf"], 2, "tau_ext = inf is no finite number"),
         (["reassemble", "nan"], 2, "depth_mm = nan is no finite number; expected the depth in mm"),
         (["load", "tau_ext=nan"], 2, "tau_ext = nan is no finite number"),
-        (["hang", "1e9"], 2, "a weight of 1e+09 N·m: expected a number from -1000 to 1000 N·m"),
+        (["hang", "46"], 2, "a weight of 46 N·m is more than the shaft carries; expected a number from -45 to 45 N·m"),
     ],
 )
 def test_what_cannot_be_meant_is_a_sentence(

@@ -210,7 +210,7 @@ def test_the_mapping_shown_by_import_help_works(tmp_path: Path, capsys: pytest.C
         theta_m = 0.02 * k
         theta_l = theta_m / 50 - 1e-4 * math.sin(2 * theta_m)
         rows.append(f"{4.0 * k},{int(theta_m / (2 * math.pi) * 10000)},{-math.degrees(theta_l):.6f}")
-    (tmp_path / "own.csv").write_text("\n".join(rows))
+    (tmp_path / "own.csv").write_text("\n".join([*rows, ""]))
     assert main(["import", str(tmp_path / "own.csv"), "--map", str(tmp_path / "map.toml"), "--out", str(tmp_path)]) == 0
     said = capsys.readouterr()
     assert "SN0042" in said.out

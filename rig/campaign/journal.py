@@ -22,6 +22,7 @@ from rig.runfile.process import is_being_made, sole_writer, this_process
 NAME = "campaign.json"
 SCHEMA = "hdrig.campaign/1"
 PATIENCE = 5.0  # s for another one that is about to go on with the same campaign to say so
+LOST = "lost"  # status of a run that was done and is no more: it is open again
 SETTLED = ("done", "skipped")  # statuses a resumed campaign leaves alone
 KINDS: dict[str, type[Change]] = {k.__name__: k for k in (HangWeight, LockOutput, FreeOutput, Reassemble)}
 
@@ -74,6 +75,16 @@ class Journal:
         entry, run = self.book["runs"][index], "" if folder is None else str(folder.relative_to(self.folder))
         entry["attempts"].append({"utc": utc_now(), "status": status, "sentence": sentence, "run": run})
         entry |= {"status": status, "sentence": sentence, "run": run}
+        self._save()
+
+    def lose(self, index: int, sentence: str) -> None:
+        """A run that was done is gone, or cannot be read: it counts as not made, and its figure goes with it."""
+        self.book["runs"][index].pop("figure", None)
+        self.end(index, LOST, sentence)
+
+    def moved(self, index: int, name: str) -> None:
+        """The folder of a run is called `name` now."""
+        self.book["runs"][index]["run"] = name
         self._save()
 
     def figure(self, index: int, sentence: str) -> None:
@@ -190,7 +201,8 @@ def read_journal(folder: Path) -> Journal:
     try:
         book = parse(contents(path))
     except FileNotFoundError:
-        raise UsageError(f"{folder} is not a campaign folder: it has no {NAME}") from None
+        why = f"is not a campaign folder: it has no {NAME}" if folder.exists() else "does not exist"
+        raise UsageError(f"{folder} {why}") from None
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:

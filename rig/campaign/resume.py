@@ -1,4 +1,4 @@
-"""What a campaign that ended, however, left behind: dead runs closed as interrupted, the journal told."""
+"""What a campaign that ended, however, left behind: dead runs closed as interrupted, lost ones open again."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rig.campaign.journal import Journal
+from rig.campaign.lost import give_up
 from rig.core.errors import HdrigError, NotReady
 from rig.runfile import manifest
 from rig.runfile.finalise import is_closed
@@ -18,7 +19,8 @@ PATIENCE = 15.0  # s for the recorder of a killed program to write what it has a
 
 
 def take_up(journal: Journal) -> list[str]:
-    """Claim the campaign, close what was being made when it died; what was found, in sentences.
+    """Claim the campaign, close what was being made when it died, open again what is lost; what was found, in
+    sentences.
 
     Raises NotReady while another process makes it.
     """
@@ -38,6 +40,9 @@ def take_up(journal: Journal) -> list[str]:
     for index, entry in enumerate(journal.book["runs"]):
         if entry["status"] == "running":  # it died before there was a folder
             journal.end(index, "interrupted", "it died before its first row")
+    for said in give_up(journal):
+        told.append(said)
+        journal.tell(said)
     return told
 
 

@@ -12,6 +12,7 @@ from rig.campaign.changes import bare, changes_between
 from rig.campaign.figures import write_figure, write_missing_figures
 from rig.campaign.journal import Journal
 from rig.campaign.leaving import came_to_something
+from rig.campaign.lost import lacking
 from rig.campaign.planner import Campaign
 from rig.campaign.steps import Item
 from rig.campaign.unseen import unseen
@@ -73,8 +74,8 @@ def open_session(
 def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) -> Exit:
     """Make every run of `journal` that is not settled yet. Its folder is closed, with its status, on every way out.
 
-    Returns the exit code: PASS when every run was made, or skipped by somebody. Raises HdrigError when it came to an
-    end before anything was recorded.
+    Returns the exit code: PASS when every run was made, or skipped by somebody; INCOMPLETE when one that
+    was skipped had been made and is lost. Raises HdrigError when it came to an end before anything was recorded.
     """
     exit, session.facts = Exit.INTERNAL, check_facts(journal)
     try:
@@ -86,6 +87,7 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
         exit = make_runs(session, campaign, journal, desk)
         status = {Exit.PASS: "completed", Exit.STOPPED: "stopped", Exit.HALTED: "stopped"}.get(exit, "failed")
         journal.close(status, _closing(journal))
+        exit = exit or lacking(journal)
     except HdrigError as error:
         if not came_to_something(journal):
             raise
@@ -101,9 +103,9 @@ def nothing_left(journal: Journal) -> bool:
 
 
 def close_settled(journal: Journal) -> Exit:
-    """Close a campaign that was taken up with nothing left to make."""
+    """Close a campaign that was taken up with nothing left to make; INCOMPLETE where a lost run was skipped."""
     journal.close("completed", _closing(journal))
-    return Exit.PASS
+    return lacking(journal)
 
 
 def check_facts(journal: Journal) -> dict[str, Any]:

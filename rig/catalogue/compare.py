@@ -93,12 +93,13 @@ def compare(paths: Sequence[Path], root: Path | None = None) -> Comparison:
     UsageError for fewer than two runs, a path that is none, a result that is damaged, or when no other run has any
     figure of the first.
     """
-    if len(paths) < 2:
+    given = [_run(path) for path in paths]
+    if len(given) < 2:
         raise UsageError(
             f"compare was given {len(paths) or 'no'} run folder: expected two or more, the others against the first"
         )
     copies: list[str] = []
-    found = tuple(once([_run(path) for path in paths], lambda f, why: copies.append(f"{f.name} counts once: {why}")))
+    found = tuple(once(given, lambda f, why: copies.append(f"{f.name} counts once: {why}")))
     if len(found) < 2:
         raise UsageError(f"compare was given one run {len(paths)} times: {'; '.join(copies)[:300]}")
     known = [figures(one.path) for one in found]

@@ -12,7 +12,7 @@ from typing import Any
 from rig.catalogue.figures import Figure, bare, common_label, figures, names_of, refuse_unknown
 from rig.catalogue.filter import Filter
 from rig.catalogue.repeats import figure_of
-from rig.catalogue.row import Row, finite
+from rig.catalogue.row import UNREADABLE, Row, finite
 from rig.catalogue.sameness import Mounting, Point, mounting, point, words
 from rig.catalogue.scan import quickly_doubted, runs
 from rig.catalogue.scan import row as row_in
@@ -76,7 +76,7 @@ class Trend:
     figure: str
     series: tuple[Series, ...]
     left_out: int  # runs that have the figure and do not count: not completed, or rejected
-    copies: tuple[str, ...] = ()  # folders left out: their run is there already, or in doubt; a sentence each
+    copies: tuple[str, ...] = ()  # folders left out: unreadable, their run is there already, or in doubt; in sentences
 
     def as_json(self) -> dict[str, Any]:
         """Schema hdrig.trend/1; numbers that are not finite as null."""
@@ -113,7 +113,9 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
     copies: dict[Path, str] = {}
     again: dict[Path, str] = {}
     found = runs(root, Filter(gear=gear), lambda folder, why: copies.update({folder: why}))
-    found = list(measured_once(found, lambda folder, why: again.update({folder: why})))
+    unreadable = [f"{row.path.name} is left out: {row.problem}" for row in found if row.status == UNREADABLE]
+    readable = [row for row in found if row.status != UNREADABLE]
+    found = list(measured_once(readable, lambda folder, why: again.update({folder: why})))
     kept: dict[tuple[Point, str], list[tuple[Row, Figure]]] = defaultdict(list)
     counted: list[Row] = []
     doubts: list[str] = []
@@ -123,13 +125,16 @@ def trend(root: Path | str, figure: str, gear: str = "") -> Trend:
             kept[point(row), one.name].append((row, one))
             counted.append(row)
     if not found:
-        raise UsageError(f"there are no runs in {root}" + (f" of a gear '{gear}'" if gear else ""))
+        of = f" of a gear '{gear}'" if gear else ""
+        raise UsageError(
+            "; ".join([f"there are no runs in {root}{of}{' that can be read' * bool(unreadable)}", *unreadable])
+        )
     if not kept:
         refuse_unknown(figure, _seen(found), bare(root, [row.path for row in found if not _names(row)], len(found)))
     numbers = _numbers(counted)
     series = tuple(_series(at, members, numbers) for (at, _), members in kept.items())
     copies |= {path: why for path, why in again.items() if figure_of(row_in(path), names_of(figure)) is not None}
-    told = (*doubts, *(f"{folder.name} is left out: {why}" for folder, why in copies.items()))
+    told = (*unreadable, *doubts, *(f"{folder.name} is left out: {why}" for folder, why in copies.items()))
     return Trend(figure, series, _left_out(found, figure) - len(counted) - len(doubts), told)
 
 

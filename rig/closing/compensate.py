@@ -101,7 +101,7 @@ def refuse_first(bench: Bench, gear: GearFile, speeds_rpm: Sequence[float], revo
     for speed in sorted(speeds_rpm, reverse=True):
         for motion in motions(bench, gear, gear.kinematic_error.series, speed, revolutions):
             refuse_endless(bench, motion)
-            refuse_beyond_limits(bench, motion)
+            refuse_beyond_limits(bench, motion, given="speed")
     slowest = min(speeds_rpm)
     if said := unlike_the_series(gear, slowest):
         raise UsageError(

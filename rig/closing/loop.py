@@ -15,14 +15,13 @@ from rig.campaign.planner import Campaign
 from rig.campaign.run import Desk, make_runs
 from rig.closing.advice import Advice, advised, same
 from rig.closing.grow import grown
-from rig.closing.story import End, Round, Story, left, told_by, write_story
+from rig.closing.story import SETTLED, End, Round, Story, left, settled_by, told_by, write_story
 from rig.core.errors import Exit, NotReady, UsageError
 from rig.report.numbers import counted
 from rig.session import Session
 
 Look = Callable[[Path], Trace]
 """From the campaign's folder to what its runs say. Raises HdrigError."""
-SETTLED = {Status.EXPLAINED: End.EXPLAINED, Status.NOTHING: End.NOTHING}
 
 
 @dataclass
@@ -55,14 +54,13 @@ class Closing:
         made = [item.words() for item in self.campaign.items[known:]]
         found = told_by(self.look(self.journal.folder), len(self.story.rounds) + 1, made, self.minutes())
         self.desk.say(words(found))
-        if self.session.interrupts.count:
+        if (end := settled_by(found)) is not None:  # also where somebody asked to stop meanwhile: nothing is left to do
             self._with(found)
+            self.ended(end, found.sentence)
+            return
+        self._advise(found)
+        if self.story.end is End.OPEN and self.session.interrupts.count:
             self.ended(End.STOPPED, "Stopped by the operator; --resume goes on with it.")
-        elif found.status in SETTLED and not left(found):
-            self._with(found)
-            self.ended(SETTLED[found.status], found.sentence)
-        else:
-            self._advise(found)
 
     def _advise(self, found: Round) -> None:
         """Put the run asked for behind the others, or end with the reason why not."""

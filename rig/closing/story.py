@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
@@ -33,6 +33,9 @@ class End(StrEnum):
     BUDGET = "budget"
     STOPPED = "stopped"
     OPEN = "open"  # it goes on
+
+
+SETTLED = {Status.EXPLAINED: End.EXPLAINED, Status.NOTHING: End.NOTHING}
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,11 @@ def left(found: Round) -> str:
     return f"Not all of it: {said}, and what that is, is not known." if said else ""
 
 
+def settled_by(found: Round) -> End | None:
+    """How a loop ends with this round; None where something is left to be run for, or cannot be."""
+    return None if left(found) else SETTLED.get(found.status)
+
+
 @dataclass(frozen=True)
 class Story:
     """All rounds of one campaign."""
@@ -88,6 +96,12 @@ class Story:
         """Whether it came to an end that a budget of so many minutes of rig time does not open again."""
         more = self.end is End.BUDGET and budget_minutes > self.budget_minutes
         return self.end not in (End.OPEN, End.STOPPED) and not more
+
+
+def concluded(story: Story) -> Story:
+    """The same, with the end that its last trace came to where the loop was ended before it could say so."""
+    end = settled_by(story.rounds[-1]) if story.rounds and story.end in (End.OPEN, End.STOPPED) else None
+    return story if end is None else replace(story, end=end, sentence=story.rounds[-1].sentence)
 
 
 def told_by(found: Trace, number: int, made: Sequence[str], minutes: float) -> Round:

@@ -33,6 +33,8 @@ NUMBERS = {
     "depth_mm": "the depth in mm, for example 'hdrig twin reassemble 0.1'",
 }
 
+OWN = {"tau_ext": "N·m", "depth_mm": "mm"}  # units of those numbers
+
 UNITS = {
     **dict.fromkeys(("t", "late"), "s"),
     **dict.fromkeys(("theta_m", "theta_l", "phi"), "rad"),
@@ -56,8 +58,14 @@ def ask(control: Path, words: Sequence[str]) -> list[str]:
     if asked["do"] == "help":
         answer = _as_here(answer)
     answer.pop("ok", None)
-    done = f"SIMULATED: the twin at {control}: {' '.join(words)}"
+    done = f"SIMULATED: the twin at {control}: {' '.join([*words, *_unit(words, asked)])}"
     return [done, *(f"  {key:14s} {told(key, value)}" for key, value in answer.items())]
+
+
+def _unit(words: Sequence[str], asked: dict[str, Any]) -> list[str]:
+    """Of a number that was given without its key."""
+    own = HAND.get(words[0], ("", ""))[1]
+    return [OWN[own]] if own in asked and len(words) == 2 and "=" not in words[1] else []
 
 
 def _as_here(answer: dict[str, Any]) -> dict[str, Any]:

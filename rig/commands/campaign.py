@@ -17,6 +17,7 @@ from rig.campaign.changes import ByHand, deeds
 from rig.campaign.figures import write_missing_figures
 from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
 from rig.campaign.leaving import swept
+from rig.campaign.lost import lost_runs, still_to_make
 from rig.campaign.plan import PLANS, Plan, read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
@@ -105,9 +106,11 @@ def _resume(args: argparse.Namespace) -> int:
     bench = read_bench(args.bench or book["bench"]["source"], overrides)
     campaign = planned(plan, bench, book["seed"] if args.seed is None else args.seed)
     refuse_other_campaign(journal, campaign)
+    lost = lost_runs(journal)
+    todo = still_to_make(journal, lost)
     if args.dry_run:
-        return foretell(args.json, dry_run.lines(campaign, journal.open_runs()))
-    refuse_nobody(campaign, journal.open_runs())
+        return foretell(args.json, [*lost.values(), *dry_run.lines(campaign, todo)])
+    refuse_nobody(campaign, todo)
     for line in take_up(journal):
         print(line, file=sys.stderr)
     for number in args.skip:
@@ -151,8 +154,9 @@ def _told(journal: Journal, exit: Exit, show: Show) -> int:
     show.tell("campaign", folder=str(journal.folder), status=journal.book["status"], runs=journal.count())
     show.leave(exit)
     print(f"{text}campaign folder {journal.folder}")
-    if exit:
+    if exit and not nothing_left(journal):
         print(f"hdrig campaign --resume {shlex.quote(str(journal.folder))} goes on with it", file=sys.stderr)
+    if exit:
         return int(exit)
     return followed(journal.folder)
 

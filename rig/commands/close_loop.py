@@ -17,6 +17,7 @@ from rig.campaign.changes import deeds
 from rig.campaign.dry_run import lasting
 from rig.campaign.journal import Journal, new_journal, read_journal
 from rig.campaign.leaving import swept
+from rig.campaign.lost import lost_runs
 from rig.campaign.plan import PLANS, read_plan
 from rig.campaign.planner import Campaign, planned
 from rig.campaign.resume import take_up
@@ -84,12 +85,12 @@ def _begin(args: argparse.Namespace) -> int:
 def _resume(args: argparse.Namespace) -> int:
     """Plan, bench, seed and clock are those it began with, and the budget where none is asked for."""
     from rig.closing.grow import regrown
-    from rig.closing.story import End, read_story
+    from rig.closing.story import End, concluded, read_story
 
-    journal, story = read_journal(args.resume), read_story(args.resume)
-    book = journal.book
+    journal, story = read_journal(args.resume), concluded(read_story(args.resume))
+    book, lost = journal.book, lost_runs(journal)
     budget = story.budget_minutes if args.budget_minutes is None else args.budget_minutes
-    if story.finished(budget) and nothing_left(journal):
+    if story.finished(budget) and not lost and nothing_left(journal):
         return _finished(journal, story, args.json)
     bench = read_bench(book["bench"]["source"], list(book["bench"]["overrides"]))
     campaign = planned(read_plan(str(journal.folder / "plan.toml")), bench, book["seed"])
@@ -106,9 +107,11 @@ def _resume(args: argparse.Namespace) -> int:
 def _finished(journal: Journal, story: Story, json: bool) -> int:
     """Nothing is left to do: told as it ended, its book closed where the program died before it was; the exit code."""
     from rig.closing.run import exit_of, in_the_book
+    from rig.closing.story import write_story
 
     for line in take_up(journal):
         print(line, file=sys.stderr)
+    write_story(journal.folder, story)
     journal.close("completed", in_the_book(journal, story.sentence))
     with showing(json) as show:
         show.say("this loop is finished: nothing is moved")

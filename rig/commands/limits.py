@@ -33,7 +33,8 @@ def limit_argument(parser: argparse.ArgumentParser) -> None:
         help="judge a figure: at most 'peak-to-peak=60 arcsec', at least 'K1=7000..', between 'C_2=30..40'; names: "
         "peak-to-peak, C_2, K1, hysteresis-loss, friction, or as in result.json; without a unit in the figure's, an "
         "angle also in arcsec, arcmin, deg, rad or mrad; of several runs it judges those made for the figure; a run "
-        "keeps it when it is analysed again, until another one or 'NAME=none' is given",
+        "keeps it when it is analysed again, beside limits on other figures, until another one of the same name or "
+        "'NAME=none' is given",
     )
 
 

@@ -67,16 +67,22 @@ def perform(job: Job, show: Show, looking_on: Observer) -> int:
             raise KeyboardInterrupt
         result, simulated = analyse_folder(done.folder, done.folder)
     except KeyboardInterrupt:
-        show.say(f"the run is complete in {done.folder}; hdrig analyse makes its report")
+        show.say(f"{_kept(done)}; hdrig analyse makes its report")
         if not done.ending.exit:
             raise
         return show.leave(done.ending.exit)  # the run had ended so before anybody interrupted its report
     except UsageError as error:  # a disk that filled up, as it is: nothing of the run is lost
-        raise DataError(f"the run is complete in {done.folder}, its report is not: {error}") from None
+        raise DataError(f"{_kept(done)}, its report is not: {error}") from None
     show.result(done.folder, as_json(result), simulated)
     code = show.leave(done.ending.exit or exit_of(result) or Exit.PASS)
     print_result(result, done.folder, done.folder, simulated)
     return code
+
+
+def _kept(done: Done) -> str:
+    """Where the run is; one that did not come to its end is not called complete."""
+    said = "is complete" if done.ending.exit is Exit.PASS else f"is kept, {done.ending.status},"
+    return f"the run {said} in {done.folder}"
 
 
 def _recorded(job: Job, show: Show, looking_on: Observer) -> tuple[Done, bool]:

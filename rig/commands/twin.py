@@ -96,12 +96,13 @@ def started(bench: Bench, args: argparse.Namespace) -> tuple[Assembly, Process]:
     from sim.wire.assembly import Assembly
     from sim.wire.motor import Rating
     from sim.wire.process import Doors, Process
+    from sim.world import MOST_LOAD
 
     assert bench.file.twin is not None
     rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
     assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
     doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate, args.odrive)
-    return assembly, Process(assembly, doors)
+    return assembly, Process(assembly, doors, bench.limits.shaft_torque or MOST_LOAD)
 
 
 def refuse_no_place(args: argparse.Namespace) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 from enum import IntEnum
 from pathlib import Path
+from typing import Final, TypeVar
 
 
 class Exit(IntEnum):
@@ -49,6 +51,19 @@ class RecorderError(HdrigError):
     """Samples can no longer be kept."""
 
     exit = Exit.TRIPPED
+
+
+E = TypeVar("E", bound=HdrigError)
+SHUT: Final = (errno.EACCES, errno.EPERM, errno.EROFS)
+"""What a system says of a place that this user may not read or write."""
+
+
+def of_place(complaint: E, error: OSError) -> E:
+    """`complaint`, made of `error`; it ends with USAGE where that is of a place that cannot be read or written, unless
+    it ends a run that is being recorded."""
+    if error.errno in SHUT and not isinstance(complaint, RecorderError):
+        complaint.exit = Exit.USAGE
+    return complaint
 
 
 def with_notes(error: BaseException) -> str:

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 NEEDED = ("rig.analysis.analyse", "rig.report.page")
 """What `analyse_folder` imports, for those who load it once and for all beforehand."""
 KEPT = (
-    "Judged by the limit set in an earlier analysis ({}): --limit NAME=LIMIT sets another one, --limit NAME=none none."
+    "Judged by the limit set in an earlier analysis ({}): --limit NAME=LIMIT sets another one of the same "
+    "name, --limit NAME=none none."
 )
 NO_LIMITS: Mapping[str, Any] = MappingProxyType({})
 

@@ -12,6 +12,7 @@
 | recover | what a killed program left → a readable run |
 | verify | does the folder keep its promises |
 | listing | run folders below a folder |
+| planned | the runs a campaign calls done, and where they lie |
 | copies | one run in several folders, taken once |
 | process | who writes a run, and whether they live |
 | samples | archive or journal, one channel at a time |

@@ -6,7 +6,8 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
-from rig.runfile.manifest import NAME
+from rig.runfile.manifest import NAME, is_nameless
+from rig.runfile.remains import hold_samples
 
 Unread = Callable[[OSError], object]
 """Told of a folder that may not be looked into."""
@@ -17,9 +18,12 @@ def passed_by(error: OSError) -> None:
 
 
 def is_run(path: Path | str) -> bool:
-    """True for a folder with a manifest. Raises PermissionError where that cannot be seen."""
+    """True for a folder with a manifest, or with samples that have lost it: every verb has a word for such a one.
+    Raises PermissionError where that cannot be seen."""
     try:
         os.stat(f"{path}/{NAME}")
+    except FileNotFoundError:
+        return is_nameless(Path(path))
     except PermissionError:
         raise
     except (OSError, ValueError):
@@ -34,14 +38,14 @@ def runs_in(path: Path, unread: Unread = passed_by) -> list[Path]:
         return [path]
     found = []
     for at, folders, files in os.walk(path, onerror=unread) if path.is_dir() else ():
-        if NAME in files or NAME in folders:
+        if NAME in files or NAME in folders or hold_samples(files):
             found.append(Path(at))
         folders[:] = [name for name in folders if not name.startswith(".")]  # what is below those is not looked at
     return sorted(found)
 
 
 def run_folders(root: str, depth: int = 3, unread: Unread = passed_by) -> Iterator[str]:
-    """Folders with a manifest, down to ./runs/date/run, by name, links after folders; hidden ones are passed by."""
+    """Run folders, as `is_run` has it, down to ./runs/date/run, by name, links last; hidden ones are passed by."""
     try:
         entries = os.scandir(root)
     except OSError as error:

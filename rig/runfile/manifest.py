@@ -10,10 +10,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from rig.core.errors import HdrigError, UsageError, said_of
+from rig.core.errors import HdrigError, UsageError, of_place, said_of
 from rig.core.numbers import number
 from rig.core.regular import regular
-from rig.runfile.remains import SAMPLES
+from rig.runfile.remains import SAMPLES, hold_samples
 
 SCHEMA = "hdrig.run/1"
 NAME = "manifest.json"
@@ -33,21 +33,31 @@ Manifest = dict[str, Any]
 class Damaged(UsageError):
     """A manifest that holds no JSON: empty, cut short or overwritten."""
 
-    def __init__(self, path: Path, what: str) -> None:
-        super().__init__(f"{path} {what}; hdrig recover makes it anew where bench.toml and samples lie beside it")
+    def __init__(self, path: Path, what: str, said: str = "") -> None:
+        anew = "hdrig recover makes it anew where bench.toml and samples lie beside it"
+        super().__init__(f"{said or f'{path} {what}'}; {anew}")
         self.what = what  # "is empty (0 bytes)"
+
+
+class Missing(Damaged):
+    """Samples in a folder without a manifest."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path, "is missing", f"{path.parent} has samples and no {path.name}")
 
 
 def read(folder: Path) -> Manifest:
     """The manifest of `folder`; a null is as good as an absent key.
 
     Raises UsageError when there is none, it is JSON of another schema, or a key holds what it cannot; Damaged when it
-    is not JSON.
+    is not JSON, Missing when there are samples and none.
     """
     path = folder / NAME
     try:
         found = parse(contents(path))
     except FileNotFoundError:
+        if is_nameless(folder):
+            raise Missing(path) from None
         raise UsageError(f"{folder} is not a run folder: it has no {NAME}") from None
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror}") from error
@@ -62,6 +72,15 @@ def read(folder: Path) -> Manifest:
     found = {key: value for key, value in found.items() if value is not None}
     _refuse_other_kinds(path, found)
     return found
+
+
+def is_nameless(folder: Path) -> bool:
+    """Whether `folder` holds samples and no manifest. False also where that cannot be seen."""
+    try:
+        names = os.listdir(folder)
+    except (OSError, ValueError):
+        return False
+    return NAME not in names and hold_samples(names)
 
 
 def entry(about: Mapping[str, Any], name: str) -> Mapping[str, Any]:
@@ -208,11 +227,11 @@ def sync_folder(folder: Path) -> None:
 
 @contextlib.contextmanager
 def told(kind: type[HdrigError], what: str) -> Iterator[None]:
-    """Turn an OSError into a sentence of `kind`: "<what>: No space left on device"."""
+    """Turn an OSError into a sentence of `kind`: "<what>: No space left on device"; exit code as in `of_place`."""
     try:
         yield
     except OSError as error:
-        raise kind(f"{what}: {error.strerror or error}") from error
+        raise of_place(kind(f"{what}: {error.strerror or error}"), error) from error
 
 
 def utc_now() -> str:

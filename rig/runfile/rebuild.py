@@ -1,4 +1,4 @@
-"""A damaged manifest.json → a minimal one of what bench.toml and the samples say; the damaged file stays beside it."""
+"""A manifest.json damaged or gone → a minimal one of what bench.toml and the samples say; a damaged file stays."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ def rebuild(folder: Path, damage: manifest.Damaged) -> manifest.Manifest:
         )
     layout = open_samples(folder).layout
     with manifest.told(DataError, f"{folder / manifest.NAME} cannot be made anew"), sole_writer(folder):
-        kept = _keep(folder)
+        kept = "" if isinstance(damage, manifest.Missing) else f"; the old file is {_keep(folder)}"
         note = f"{manifest.NAME} {damage.what} and was rebuilt from {BENCH} and the samples"
         about = {
             "schema": manifest.SCHEMA,
             "procedure": OTHER,
             "status": "interrupted",
-            "exit_reason": f"{note}: procedure, conditions and how the run ended are not known; the old file is {kept}",
+            "exit_reason": f"{note}: procedure, conditions and how the run ended are not known{kept}",
             "gear": gear,
             **_recorded_as(layout),
         }

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rig.core.errors import DataError, NotReady, UsageError
+from rig.core.errors import DataError, Exit, NotReady, UsageError
 from rig.core.ring import Ring
 from rig.runfile import archive, manifest
 from rig.runfile.events import EventLog, mend_events, read_events
@@ -84,6 +84,8 @@ def _refuse_unreadable(folder: Path) -> None:
         for _ in open_samples(folder).batches():
             pass
     except DataError as error:
+        if error.exit is Exit.USAGE:  # nobody may read them, and that says nothing of damage
+            raise
         raise DataError(f"{error}; there is no journal and no ring to make it anew from") from error
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,11 @@ SAMPLES = "samples.parquet"
 def journal_files(folder: Path) -> list[Path]:
     """The journals of a run, oldest first."""
     return sorted(folder.glob("journal-*.arrows"))
+
+
+def hold_samples(names: Iterable[str]) -> bool:
+    """Whether files of these names are samples: where a manifest has to stand beside them, that is a run without it."""
+    return any(n.startswith("samples.") or (n.startswith("journal-") and n.endswith(".arrows")) for n in names)
 
 
 def ring_of(about: Mapping[str, Any]) -> Path:

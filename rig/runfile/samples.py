@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,7 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from rig.core.channels import CHANNEL
-from rig.core.errors import DataError, UsageError
+from rig.core.errors import SHUT, DataError, UsageError, of_place
 from rig.core.regular import regular
 from rig.core.rows import room
 from rig.runfile.archive import NAME
@@ -147,6 +148,15 @@ def _refuse_other_units(path: Path, field: pa.Field) -> None:
 def _read(path: Path) -> Iterator[None]:
     try:
         yield
-    except (OSError, pa.ArrowException) as error:
-        said = getattr(error, "strerror", None) or str(error) or type(error).__name__
-        raise DataError(f"{path} cannot be read: {said.splitlines()[0]}") from error
+    except OSError as error:
+        if error.errno is None:  # the library's, of what it found
+            raise _damaged(path) from error
+        said = os.strerror(error.errno) if error.errno in SHUT else error.strerror
+        raise of_place(DataError(f"{path} cannot be read: {said}"), error) from error
+    except pa.ArrowException as error:
+        raise _damaged(path) from error
+
+
+def _damaged(path: Path) -> DataError:
+    """What a library says of damage names its own inside; that a file was cut short shows in its size."""
+    return DataError(f"{path} cannot be read: it is damaged or cut short ({path.stat().st_size} bytes)")

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from rig.core.channels import Flag
 from rig.core.drivetrain import RATIOS
-from rig.core.errors import HdrigError
+from rig.core.errors import DataError, Exit, HdrigError, UsageError, said_of
 from rig.core.numbers import number
 from rig.runfile import archive, manifest
 from rig.runfile.columns import Array
@@ -34,9 +34,12 @@ MAKE_UP = 5  # rows within which a late tick has been made up for: the loop coun
 
 def verify(folder: Path) -> list[Finding]:
     """Everything worth saying about a run; no "error" among it means the promises are kept. Raises UsageError when it
-    is no run folder at all.
+    is no run folder at all, or a file of it may not be read.
     """
-    about = manifest.read(folder)
+    try:
+        about = manifest.read(folder)
+    except manifest.Damaged as damage:
+        return [Finding("error", "manifest", said_of(folder, damage))]
     findings = [*_status(folder, about), *_hashes(folder, about), *_read_only(folder, about)]
     findings += [Finding("error", "manifest", f"{manifest.NAME}: {said}") for said in misfits(about)]
     odd = (*misfits_of_ours(about), *mistyped(about))
@@ -45,6 +48,8 @@ def verify(folder: Path) -> list[Finding]:
     try:
         run = Run.open(folder)
     except HdrigError as error:
+        if isinstance(error, DataError) and error.exit is Exit.USAGE:  # nobody may read them: as of a hash
+            raise
         return [*findings, Finding("error", "samples", str(error))]
     for check in (_rows, _time, _gaps, _flags, values, _backend, _journal):
         findings += check(run)
@@ -82,6 +87,8 @@ def _hashes(folder: Path, about: Mapping[str, Any]) -> Iterator[Finding]:
             same = describe(folder / name)["sha256"] == said.get("sha256")
         except FileNotFoundError:
             yield Finding("error", "hashes", f"{name} is in the manifest and not in the folder")
+        except PermissionError as error:  # whether a promise is broken there is not known
+            raise UsageError(f"{folder / name} cannot be read: {error.strerror}") from None
         except OSError as error:
             yield Finding("error", "hashes", f"{name} cannot be read: {error.strerror}")
         else:

@@ -33,7 +33,7 @@ def conduct_plan(station: Station, message: Mapping[str, Any]) -> None:
     """Every run of the plan that is open; its folder is closed, with its status, on every way out."""
     session = station.need()
     resumed = message.get("resume")
-    journal, campaign = _resumed(session, Path(str(resumed))) if resumed else _new(station, session, message)
+    journal, campaign = _resumed(station, session, Path(str(resumed))) if resumed else _new(station, session, message)
     station.busy(f"campaign {campaign.plan.file.name}")
     desk = PageDesk(station, campaign, journal)
     session.root, session.create, session.checks = journal.folder, create_in, "checks"
@@ -80,13 +80,14 @@ def _new(station: Station, session: Session, message: Mapping[str, Any]) -> tupl
     return journal, campaign
 
 
-def _resumed(session: Session, folder: Path) -> tuple[Journal, Campaign]:
+def _resumed(station: Station, session: Session, folder: Path) -> tuple[Journal, Campaign]:
     """With the plan, bench and seed it began with. Raises UsageError where those are others."""
     journal = read_journal(folder)
     plan = read_plan(str(folder / "plan.toml"))
     campaign = planned(plan, session.bench, journal.book["seed"])
     refuse_other_campaign(journal, campaign)
-    take_up(journal)
+    for line in take_up(journal):
+        station.teller.say("said", line)
     hand = getattr(session.hand, "hand", None)
     if hand is not None:  # the twin begins anew: what was made is made again
         for change in journal.made:

@@ -21,6 +21,7 @@ from sim.wire.reactor import Reactor, Source
 from sim.wire.slcan import SerialCan
 from sim.wire.socketcand import SocketCand
 from sim.wire.verbs import plant_verbs
+from sim.world import MOST_LOAD
 
 SETTLED = 0.1  # s, modelled: the nodes have booted when the first host comes
 ODRIVE = 0  # its node number, as it leaves the factory
@@ -40,10 +41,10 @@ class Doors(NamedTuple):
 
 @final
 class Process:
-    """Listens from the moment it is made. `lines` tell a person how to reach it."""
+    """Listens from the moment it is made. `lines` tell a person how to reach it; its shaft `carries` so many N·m."""
 
-    def __init__(self, assembly: Assembly, doors: Doors) -> None:
-        self.assembly = assembly
+    def __init__(self, assembly: Assembly, doors: Doors, carries: float = MOST_LOAD) -> None:
+        self.assembly, self._carries = assembly, carries
         _ = Frame(0, bytes(8)).bits  # compiled code is loaded now, not between the first two frames
         assembly.agenda.run_until(SETTLED)
         self.reactor = Reactor(assembly.agenda)
@@ -73,7 +74,7 @@ class Process:
         if doors.serial is not None:
             self._serial(doors.serial, doors.torque_rate)
         faults = fault_verbs(self.assembly, self.reactor, self.serial, self._sensors)
-        verbs = {**plant_verbs(self.assembly, self.reactor, faults["faults"]), **faults}
+        verbs = {**plant_verbs(self.assembly, self.reactor, faults["faults"], self._carries), **faults}
         self._add(Control(self.reactor, doors.control, verbs))
         self._tell("control", f'{doors.control}, one JSON object a line, for example {{"do": "help"}}')
 

@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from typing import Any
 
+from rig.core.errors import UsageError
 from sim.wire.assembly import Assembly
 from sim.wire.control import Verb
 from sim.wire.reactor import Reactor
+from sim.world import MOST_LOAD
 
 
-def plant_verbs(assembly: Assembly, reactor: Reactor, faults: Verb = dict) -> dict[str, Verb]:
-    """load, lock, unlock, reassemble, truth, status, stop. `faults`: the verb that lists what stands, for status."""
+def plant_verbs(
+    assembly: Assembly, reactor: Reactor, faults: Verb = dict, carries: float = MOST_LOAD
+) -> dict[str, Verb]:
+    """load, lock, unlock, reassemble, truth, status, stop. `faults`: the verb that lists what stands, for status;
+    `carries`: N·m that the shaft may."""
     world, agenda, bus = assembly.world, assembly.agenda, assembly.bus
 
     def load(tau_ext: float) -> None:
         """Hang a weight: N·m on the load, positive drives it forward"""
+        if abs(tau_ext) > carries:
+            expected = f"expected a number from {-carries:g} to {carries:g} N·m"
+            raise UsageError(f"a weight of {tau_ext:g} N·m is more than the shaft carries; {expected}")
         world.advance_to(agenda.now)
         world.load_torque(float(tau_ext))
 

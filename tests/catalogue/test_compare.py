@@ -175,6 +175,18 @@ def test_a_trend_has_a_series_for_each_gear_procedure_and_point_and_leaves_out_w
     assert "hysteresis-loss" not in str(caught.value), "a word that none of these runs can answer"
 
 
+def test_a_trend_names_what_it_cannot_read_and_counts_it_to_no_other_kind(tmp_path: Path) -> None:
+    good = run(tmp_path, DAYS[0], 0)
+    bad = run(tmp_path, DAYS[0], 1)
+    (bad / "manifest.json").write_text("{")
+    found = trend(tmp_path, "peak-to-peak")
+    assert (found.left_out, len(found.copies)) == (0, 1)
+    assert found.copies[0].startswith(f"{bad.name} is left out: {bad / 'manifest.json'} is not JSON")
+    (good / "manifest.json").write_text("")
+    with pytest.raises(UsageError, match=rf"^there are no runs in {tmp_path} that can be read; .* is left out: "):
+        trend(tmp_path, "peak-to-peak")
+
+
 def test_a_trend_over_no_runs_says_so_and_blames_no_figure(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=f"^there are no runs in {tmp_path}$"):
         trend(tmp_path, "peak-to-peak")
@@ -299,7 +311,7 @@ def test_a_figure_measured_at_unlike_speeds_is_not_called_by_one_of_them() -> No
 
 def test_one_run_alone_is_not_compared(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="given 1 run folder: expected two or more"):
-        compare([tmp_path])
+        compare([run(tmp_path, DAYS[0])])
 
 
 @pytest.mark.parametrize(

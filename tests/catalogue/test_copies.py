@@ -39,6 +39,9 @@ def test_a_comparison_takes_a_run_once_and_finds_no_repeat_in_its_copy(
     assert [row.path for row in found.rows] == [a, b]
     assert found.remarks == (f"a-link counts once: it is the same run as {a.name} (uid 2026-11-20-0)",)
     assert "no repeats" in found.lines[0].differences[1].how  # type: ignore[union-attr]
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(UsageError, match=r"empty is not a run folder: it has no manifest\.json"):
+        compare([tmp_path / "empty"])
     with pytest.raises(UsageError, match="compare was given one run 2 times: a-link counts once"):
         compare([a, tmp_path / "a-link"])
 

@@ -19,7 +19,7 @@ from tests.closing.test_compensate import gear
 REFUSED = {
     (700.0,): "asks for up to 735 rpm of motor speed, the bench allows 600 rpm",
     (9.6, 700.0): "asks for up to 735 rpm of motor speed",
-    (5000.0,): "deg of motor travel, the bench allows",
+    (5000.0,): "asks for up to 5250 rpm of motor speed, .*: limits.speed_rpm$",
     (380.0,): r"--speed 380: by the gear file \d\d % of the error there is the gear's dynamics, .* \(order 4 is \d+",
 }
 

@@ -126,6 +126,30 @@ def test_nothing_is_run_beyond_the_budget_of_rig_time(tmp_path: Path) -> None:
     assert runs(closing.journal) == ["standstill done"]
 
 
+def test_what_a_trace_says_while_somebody_asks_to_stop_is_kept(tmp_path: Path) -> None:
+    """A verdict ends the loop as ever; a run that is asked for is written down, to be made when it goes on."""
+
+    def ended_by(found: Trace, root: Path) -> Closing:
+        campaign = planned(parse_plan(PLAN, "small.toml"), read("twin"), 1)
+        journal = new_journal(root, campaign, "virtual", [])
+        with open_session(campaign, journal, "virtual", Interrupts()) as session:
+
+            def look(folder: Path) -> Trace:
+                session.interrupts.request()
+                return found
+
+            story = Story(journal.folder.name, True, 60.0)
+            closing = Closing(session, campaign, journal, Quiet(session), look, session.instruments.clock.now, story)
+            conduct(closing)
+        return closing
+
+    settled = ended_by(saying(Status.NOTHING), tmp_path / "settled")
+    assert (settled.story.end, len(settled.story.rounds)) == (End.NOTHING, 1)
+    asking = ended_by(saying(Status.AMBIGUOUS, REST), tmp_path / "asking")
+    assert (asking.story.end, runs(asking.journal)) == (End.STOPPED, ["standstill done", *["standstill planned"] * 2])
+    assert asking.story.rounds[0].plan
+
+
 def test_a_loop_that_was_stopped_goes_on_where_it_was(tmp_path: Path) -> None:
     traces = iter([saying(Status.AMBIGUOUS, REST), saying(Status.NOTHING)])
     exit, closing = loop(tmp_path, traces, stop_at=2)

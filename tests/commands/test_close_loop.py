@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from rig.campaign.journal import new_journal, read_journal
 from rig.campaign.plan import read_plan
 from rig.campaign.planner import planned
 from rig.cli import main
-from rig.closing.story import End, Story, write_story
+from rig.closing.story import End, Story, read_story, told_by, write_story
 from rig.commands import close_loop
 from rig.core.errors import Exit
 from rig.evaluation.trace import trace_folder
@@ -82,6 +83,36 @@ def test_a_finished_loop_is_told_as_it_ended_and_nothing_is_moved(
     assert f"loop {end} after 0 rounds: The verdict." in said.out
     assert (begun / "close-loop.json").read_bytes() == before
     assert read_journal(begun).book["status"] == "completed"
+
+
+def test_a_loop_stopped_after_its_trace_had_settled_it_says_the_verdict_at_once(
+    begun: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ended(begun, End.STOPPED)
+    story = read_story(begun)
+    settled = told_by(made_up.nothing(), 1, ("standstill",), 4.0)
+    write_story(begun, replace(story, rounds=(settled,)))
+    monkeypatch.setattr(close_loop, "_make", lambda *given: pytest.fail("it moves"))
+    assert main(["close-loop", "--resume", str(begun)]) == Exit.PASS
+    said = capsys.readouterr()
+    assert "this loop is finished: nothing is moved" in said.err
+    assert f"loop nothing missing after 1 round: {settled.sentence}" in said.out
+    assert read_story(begun).end is End.NOTHING
+
+
+def test_a_finished_loop_with_a_run_that_is_gone_makes_it_again(begun: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ended(begun, End.EXPLAINED)
+    journal = read_journal(begun)
+    journal.end(0, "done", "completed", begun / "0820-gone-abcd")
+    made: list[list[int]] = []
+    monkeypatch.setattr(close_loop, "_make", lambda *given: made.append(given[1].open_runs()) or 0)
+    assert main(["close-loop", "--resume", str(begun), "--budget-minutes", "60"]) == Exit.PASS
+    assert made == [[0]]
+
+
+def test_a_folder_that_does_not_exist_is_said_not_to(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["close-loop", "--resume", str(tmp_path / "nosuch")]) == Exit.USAGE
+    assert capsys.readouterr().err == f"hdrig: {tmp_path / 'nosuch'} does not exist\n"
 
 
 def test_a_loop_that_ended_for_its_budget_goes_on_with_more_of_it(begun: Path, monkeypatch: pytest.MonkeyPatch) -> None:

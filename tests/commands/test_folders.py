@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from rig.cli import main
 from rig.commands.folders import expand, for_each
 from rig.core.errors import Exit, UsageError
 
@@ -47,6 +48,22 @@ def test_what_does_not_exist_or_is_empty_is_refused_among_others_too(campaign: P
 def test_runs_alone_say_nothing(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert len(expand([campaign])) == 3
     assert capsys.readouterr().err == ""
+
+
+def test_samples_without_a_manifest_are_a_run_that_every_verb_has_a_word_for(
+    campaign: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (campaign / "run-2" / "manifest.json").unlink()
+    (campaign / "run-2" / "journal-0001.arrows").write_bytes(b"")
+    assert [path.name for path in expand([campaign])] == ["proof", "run-1", "run-2"]
+    assert expand([campaign / "run-2"]) == [campaign / "run-2"]
+    assert main(["verify", str(campaign / "run-2")]) == Exit.INCOMPLETE
+    said = "it has samples and no manifest.json; hdrig recover makes it anew where bench.toml and samples lie beside it"
+    assert capsys.readouterr().out == f"run-2: BROKEN\n  error   {said}\n"
+    assert main(["export", str(campaign / "run-2")]) == Exit.USAGE
+    assert capsys.readouterr().err == f"hdrig: {campaign / 'run-2'}: {said}\n"
+    assert main(["list", str(campaign)]) == Exit.PASS
+    assert "run-2 has samples and no manifest.json" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -16,13 +16,18 @@ from tests.commands.made_run import made_run
 
 
 @pytest.mark.parametrize(
-    ("status", "code", "exit"),
-    [("stopped", Exit.STOPPED, 4), ("tripped", Exit.TRIPPED, 5), ("completed", Exit.PASS, Exit.HALTED)],
+    ("status", "code", "exit", "kept"),
+    [
+        ("stopped", Exit.STOPPED, 4, "is kept, stopped,"),
+        ("tripped", Exit.TRIPPED, 5, "is kept, tripped,"),
+        ("completed", Exit.PASS, Exit.HALTED, "is complete"),
+    ],
 )
 def test_ctrl_c_in_the_report_ends_a_run_as_it_had_ended(
     status: str,
     code: Exit,
     exit: int,
+    kept: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -35,7 +40,7 @@ def test_ctrl_c_in_the_report_ends_a_run_as_it_had_ended(
     monkeypatch.setattr(perform, "_recorded", lambda *_: (Done(folder, Ending(status, "as it was", code)), False))
     monkeypatch.setattr(perform, "analyse_folder", pressed)
     assert main(["run", "standstill", "--out", str(tmp_path / "out")]) == exit
-    assert f"the run is complete in {folder}; hdrig analyse makes its report" in capsys.readouterr().err
+    assert f"the run {kept} in {folder}; hdrig analyse makes its report" in capsys.readouterr().err
 
 
 def test_ctrl_c_when_nothing_was_left_of_the_run_to_end_makes_no_report(

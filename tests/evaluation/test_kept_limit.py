@@ -32,7 +32,7 @@ def test_a_run_is_judged_again_by_the_limit_it_was_judged_by_until_told_otherwis
     assert (again.verdict, again.former) == ("FAIL", ())
     assert notes(again) == [
         "Judged by the limit set in an earlier analysis (Kinematic error, peak to peak at most 60 arcsec): "
-        "--limit NAME=LIMIT sets another one, --limit NAME=none none."
+        "--limit NAME=LIMIT sets another one of the same name, --limit NAME=none none."
     ]
     other = analysed(folder, "peak-to-peak=2 arcmin")
     assert (other.verdict, notes(other)) == ("PASS", [])

@@ -63,12 +63,20 @@ def test_a_run_without_a_motor_torque_stays(tmp_path: Path) -> None:
     assert len(read_campaign(one_odd(tmp_path, without("tau_m"))).runs) == 4
 
 
+def test_angles_taken_for_each_other_are_told_of_a_run_whose_motor_hardly_goes(tmp_path: Path) -> None:
+    found = read_campaign(one_odd(tmp_path, lambda c: {**c, "theta_m": c["theta_l"], "theta_l": c["theta_m"]}))
+    [said] = [note for note in found.notes if note.startswith("odd was left out")]
+    assert "of a turn, a kinematic error needs a whole one; θ_l goes " in said
+    assert said.endswith("θ_m and θ_l seem to be taken for each other: expected the motor's angle in theta_m.")
+
+
 def test_a_folder_of_samples_without_a_manifest_is_said(tmp_path: Path) -> None:
     one_odd(tmp_path, lambda c: c)
     (tmp_path / "odd" / "manifest.json").unlink()
     (tmp_path / "pictures").mkdir()
     found = read_campaign(tmp_path)
-    assert found.notes == ("odd was left out: it has samples and no manifest.json.",)
+    [said] = found.notes
+    assert said.startswith("odd was left out: it has samples and no manifest.json; hdrig recover makes it anew")
 
 
 def test_a_reason_that_many_runs_share_is_said_once(tmp_path: Path) -> None:

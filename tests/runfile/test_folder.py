@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from rig.core.errors import NotReady, RecorderError, UsageError
+from rig.core.errors import DataError, Exit, HdrigError, NotReady, RecorderError, UsageError
 from rig.runfile import manifest
 from rig.runfile.events import EventLog, mend_events, read_events
 from rig.runfile.folder import create, create_hidden, shown
@@ -171,3 +171,18 @@ def test_a_killed_process_that_nobody_has_reaped_is_dead() -> None:
     assert process.wait() == -9
     assert process.stdin is not None
     process.stdin.close()
+
+
+@pytest.mark.parametrize(
+    ("number", "kind", "code"),
+    [
+        (errno.EACCES, NotReady, Exit.USAGE),
+        (errno.EROFS, DataError, Exit.USAGE),
+        (errno.ENOSPC, NotReady, Exit.NOT_READY),
+        (errno.EACCES, RecorderError, Exit.TRIPPED),  # a run is being recorded: it ends as such
+    ],
+)
+def test_a_place_nobody_may_use_ends_with_the_code_of_one(number: int, kind: type[HdrigError], code: Exit) -> None:
+    with pytest.raises(kind, match=r"^x cannot be opened: ") as refused, manifest.told(kind, "x cannot be opened"):
+        raise OSError(number, os.strerror(number))
+    assert refused.value.exit is code

@@ -46,6 +46,16 @@ def test_recover_rebuilds_a_damaged_manifest_and_keeps_the_old_one(tmp_path: Pat
     assert not recover(folder).changed
 
 
+@pytest.mark.parametrize("close", [True, False])
+def test_recover_makes_a_manifest_that_is_gone(tmp_path: Path, close: bool) -> None:
+    folder = damaged(tmp_path, close=close)
+    (folder / "manifest.json").unlink()
+    assert "manifest.json is missing and was rebuilt from bench.toml and the samples" in recover(folder).sentence
+    assert (Run.open(folder).rows, manifest_of(folder)["gear"]) == (300, {"ratio": 80.0, "serial": "SN7"})
+    assert not list(folder.glob("manifest-damaged-*"))  # there was no file to keep
+    assert not recover(folder).changed
+
+
 def test_a_second_damaged_manifest_does_not_overwrite_the_first(tmp_path: Path) -> None:
     folder = damaged(tmp_path, b"one")
     recover(folder)

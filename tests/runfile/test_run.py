@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import pickle
 import shutil
@@ -13,7 +14,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from rig.core.errors import DataError, UsageError
+from rig.cli import main
+from rig.core.errors import DataError, Exit, UsageError
+from rig.runfile import samples
 from rig.runfile.finalise import finalise
 from rig.runfile.run import Run
 from tests.runfile.rows import assert_prefix, expected, new_folder, write_journal
@@ -94,7 +97,7 @@ def test_one_channel_is_read_without_the_others(tmp_path: Path) -> None:
     (folder / "samples.parquet").write_bytes(raw)
     run = Run.open(folder)
     np.testing.assert_array_equal(run.need("theta_m"), expected(300)["theta_m"])
-    with pytest.raises(DataError, match=r"samples\.parquet cannot be read"):
+    with pytest.raises(DataError, match=rf"samples\.parquet cannot be read: it is damaged or cut short \({len(raw)} b"):
         run.need(spoilt.path_in_schema)
 
 
@@ -248,8 +251,21 @@ def test_a_folder_without_samples_is_refused(tmp_path: Path) -> None:
 def test_a_samples_file_that_is_none_is_said_to_be_damaged(tmp_path: Path) -> None:
     folder = foreign(tmp_path / "x")
     (folder / "samples.parquet").write_bytes(b"PAR1 no")
-    with pytest.raises(DataError, match=r"samples\.parquet cannot be read"):
+    with pytest.raises(DataError, match=r"samples\.parquet cannot be read: it is damaged or cut short \(7 bytes\)$"):
         Run.open(folder)
+
+
+def test_samples_nobody_may_read_are_a_place_and_no_damage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = foreign(tmp_path / "x")
+
+    def shut(path: Path, *args: object, **more: object) -> None:
+        raise PermissionError(errno.EACCES, "Failed to open local file 'x' [errno 13]")
+
+    monkeypatch.setattr(samples.pq, "ParquetFile", shut)
+    with pytest.raises(DataError, match=r"samples\.parquet cannot be read: Permission denied$") as refused:
+        Run.open(folder)
+    assert refused.value.exit is Exit.USAGE
+    assert main(["verify", str(folder)]) == Exit.USAGE
 
 
 def test_a_temperature_is_known_by_its_unit_whatever_it_is_called(tmp_path: Path) -> None:

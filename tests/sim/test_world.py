@@ -113,6 +113,11 @@ def test_a_dead_weight_and_a_locked_output_act_on_the_load(twin: TwinParameters)
     assert world.truth().theta_l > held.theta_l
 
 
+def test_a_weight_that_no_gear_survives_is_refused(twin: TwinParameters) -> None:
+    with pytest.raises(UsageError, match="a weight of 1e\\+09 N·m: expected a number from -1000 to 1000 N·m"):
+        World(twin, 1).load_torque(1e9)
+
+
 def test_an_output_that_only_creeps_is_held_where_it_is(twin: TwinParameters) -> None:
     world = World(twin, 1)
     world.load_torque(20.0)

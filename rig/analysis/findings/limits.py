@@ -17,6 +17,7 @@ WHERE = {
     Verdict.FAIL: "the whole interval is outside",
     Verdict.INCONCLUSIVE: "the limit lies within the interval",
 }
+NO_INTERVAL = "Expected a run that repeats its motion more often, or a limit on a figure that has an interval."
 SIDES = {"at least": "lower", "at most": "upper"}
 GRAVEST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS)  # one figure out of limits fails the run
 
@@ -79,10 +80,13 @@ def _judged(name: str, by_name: Mapping[str, Estimate], limit: Mapping[str, Any]
             f"a number in {others(e.unit)}."
         )
         return _unjudged(name, why, f"{e.label} {words}")
-    low, high = e.ci95
     bounds = {word: bound * scale for word, bound in given.items()}
     if scale != 1.0:
         words += f" ({' and '.join(f'{bound:.6g}' for bound in bounds.values())} {e.unit})"
+    low, high = e.ci95
+    if not math.isfinite(high - low):
+        why = f"{e.label} {e.value:.4g} {e.unit} has no interval in this run, limit {words}: no verdict can be made."
+        return _unjudged(name, f"{why} {NO_INTERVAL} {e.how}", f"{e.label} {words}", why)
     verdict = against_limit(e.ci95, bounds.get("at least"), bounds.get("at most"))
     text = f"{e.label} {e.value:.4g} {e.unit} ({low:.4g} to {high:.4g}), limit {words}: {WHERE[verdict]}."
     unsettled = ""
@@ -96,15 +100,13 @@ def _words(given: Mapping[str, float], unit: str) -> str:
     return " and ".join(f"{word} {bound:g}{'' if unit == '1' else f' {unit}'}" for word, bound in given.items())
 
 
-def _unjudged(name: str, why: str, limit: str) -> _Judged:
-    return _Judged(Verdict.INCONCLUSIVE, Check(f"limit_{name}", False, why), limit, why)
+def _unjudged(name: str, why: str, limit: str, check: str = "") -> _Judged:
+    return _Judged(Verdict.INCONCLUSIVE, Check(f"limit_{name}", False, check or why), limit, why)
 
 
 def _to_settle(e: Estimate, bound: float) -> str:
     """How narrow the interval would have to be, and which part of it to reduce."""
     half, away = (e.ci95[1] - e.ci95[0]) / 2, abs(bound - e.value)
-    if not math.isfinite(half):
-        return f"{e.label} has no interval here, so nothing is settled: {e.how}"
     part = max(e.parts, key=lambda p: p.half, default=None)
     largest = f"It is made so: {e.how}"
     if part is not None:

@@ -14,7 +14,7 @@ from rig.analysis.motion.source import Source, increases
 from rig.core.channels import CHANNEL
 from rig.core.numbers import number
 from rig.core.rows import room, stretches
-from rig.core.units import TURN
+from rig.core.units import ARCSEC, DEG, TURN
 from rig.runfile.misfits import notes, usable
 
 LARGEST = 2.0**53  # of any value: above, float64 skips whole counts
@@ -131,7 +131,7 @@ class Tame:
         one = rows.size == 1
         self.notes.append(
             f"{rows.size} reading{'' if one else 's'} of {name} stand{'s' if one else ''} alone, "
-            f"{'' if one else 'the farthest '}{abs(off[worst]):.3g} {CHANNEL[name].unit} off its neighbours at {at}: "
+            f"{'' if one else 'the farthest '}{_size(name, abs(off[worst]))} off its neighbours at {at}: "
             "taken as missing."
         )
         out = room(values.size)
@@ -160,6 +160,12 @@ class Tame:
         if not good:
             self.notes.append(f"The limit of {name} is not a number, or its bounds are the wrong way round.")
         return good
+
+
+def _size(name: str, off: float) -> str:
+    """How far a reading is off, for people: small angles in arcsec, as everything that is made of them."""
+    unit = CHANNEL[name].unit
+    return f"{off / ARCSEC:.4g} arcsec" if unit == "rad" and off < DEG else f"{off:.3g} {unit}"
 
 
 def _any(values: Array) -> bool:

@@ -19,6 +19,7 @@ from rig.core.errors import DataError, HdrigError, UsageError, said_of
 from rig.core.kinds import Regime, regime_of
 from rig.process.ctrl_c import deaf
 from rig.runfile import manifest as manifests
+from rig.runfile.listing import runs_in
 from rig.runfile.misfits import usable
 
 PROCESSES = 2  # the machine beside a rig has two cores to spare
@@ -66,13 +67,11 @@ def entries(campaign: Path, leave_out: Callable[[str], object] = lambda why: Non
     of which `leave_out` is told. Raises DataError: none, or runs of several gears.
     """
     found = []
-    for path in sorted(campaign.rglob(manifests.NAME)):
-        if path.parent.name.startswith("."):  # an import that was killed before it was whole
-            continue
+    for folder in runs_in(campaign):
         try:
-            found.append(entry(path.parent))
+            found.append(entry(folder))
         except UsageError as error:
-            leave_out(f"{path.parent.name}: {said_of(path.parent, error)}")
+            leave_out(f"{folder.name}: {said_of(folder, error)}")
     found = [e for e in found if _counts(e.manifest)]
     if not found:
         raise DataError(f"{campaign} holds no completed run")

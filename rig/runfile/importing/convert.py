@@ -14,13 +14,12 @@ from rig.core.errors import UsageError
 from rig.core.units import TURN
 from rig.runfile.importing import refuse, timing
 from rig.runfile.importing.channel import NEEDED, QUANTITY, ChannelMap
-from rig.runfile.importing.mapping import Mapping
+from rig.runfile.importing.mapping import COUNTED, Mapping
 from rig.runfile.importing.table import Table
 from rig.runfile.importing.units import SI, UNITS, in_name, known
 from rig.runfile.importing.unwrap import unwrap
 
 Array = npt.NDArray[Any]
-COUNTS = {"theta_m": "counts_m", "theta_l": "counts_l"}
 
 
 class Channel(NamedTuple):
@@ -171,10 +170,10 @@ def _add(result: Converted, channel: ChannelMap, raw: list[Array], skip: Array |
     if channel.modulus:
         refuse.beyond_modulus(raw[0], channel, file)
         raw = [unwrap(raw[0], channel.modulus)]
-    elif channel.quantity in ("angle", "counts") and channel.plain and name in (*NEEDED, *COUNTS.values()):
+    elif channel.quantity in ("angle", "counts") and channel.plain and name in (*NEEDED, *COUNTED.values()):
         refuse.undeclared_wrap(raw[0], channel, skip, file)
-    if name in COUNTS and channel.unit == "counts" and channel.plain:
-        counts = CHANNEL[COUNTS[name]]
+    if name in COUNTED and channel.unit == "counts" and channel.plain:
+        counts = CHANNEL[COUNTED[name]]
         result.channels.setdefault(counts.name, Channel(raw[0], counts.unit, counts.meaning))
     result.channels[name] = _scaled(channel, raw)
 

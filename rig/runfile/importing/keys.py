@@ -12,7 +12,7 @@ KEYS: Final = (
     ("[encoders] motor_counts_per_rev, load_counts_per_rev", "counts_per_turn of the channels where absent"),
     ("[csv] delimiter, decimal, encoding", "one character; . or ,; utf-8, cp1252, utf-16 …"),
     ("[csv] skip_rows, units_row, names", "lines before the header; true: units below it; names where it is none"),
-    ("[accept] period, epoch, speed, ratio, torque, stiffness, file_unit", "the reason why this check is waived"),
+    ("[accept] period, epoch, speed, ratio, torque, stiffness, file_unit, column", "why this check is waived"),
     ("[channels.NAME] column, or sum = [{column, scale}, …]", "where it comes from"),
     ("  unit, meaning", "unit may be left out where the file states it; a name of your own needs both"),
     ("  sign, scale, zero, offset", "value = sign·scale·(column − zero) + offset, in unit; not all for t and counts"),

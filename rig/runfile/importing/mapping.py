@@ -17,8 +17,10 @@ from rig.runfile.importing.strict import Section, nearest
 
 SCHEMA = "hdrig.import/1"
 SHIPPED = Path(__file__).parent / "mappings"
+COUNTED = {"theta_m": "counts_m", "theta_l": "counts_l"}  # angles, and the counts they may come from
 SERIAL = 64  # characters of a gear's, as in a bench file: it is part of a folder's name
-CHECKS = ("period", "epoch", "speed", "ratio", "torque", "stiffness", "file_unit")  # plausibility an [accept] may waive
+CHECKS = ("period", "epoch", "speed", "ratio", "torque", "stiffness", "file_unit", "column")
+"""Plausibility that an [accept] may waive."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,7 @@ def read_mapping(text: str, source: str) -> Mapping:
     )
     top.done()
     _angles(result)
+    _columns(result)
     return replace(result, encoders=_encoders(result))
 
 
@@ -164,6 +167,26 @@ def _angles(mapping: Mapping) -> None:
     if motor and load and motor.terms == load.terms:
         column = motor.terms[0].column
         raise UsageError(f"{mapping.source}: theta_m and theta_l are both column '{column}'; expected one column each")
+
+
+def _columns(mapping: Mapping) -> None:
+    """No column is two channels, but counts are also their angle, and what is scaled is another number of one kind.
+    Raises UsageError unless waived."""
+    first: dict[str, ChannelMap] = {}
+    for channel in mapping.channels.values() if "column" not in mapping.accept else ():
+        if len(channel.terms) > 1:
+            continue
+        column = channel.terms[0].column
+        other = first.setdefault(column, channel)
+        counted = {other.name, channel.name} in [set(pair) for pair in COUNTED.items()]
+        if other is not channel and not counted and not _another(channel, other):
+            said = f"{mapping.source}: channels.{channel.name}: column '{column}' is already {other.name}"
+            raise UsageError(f"{said}; expected one column each, or say why not in accept.column")
+
+
+def _another(channel: ChannelMap, other: ChannelMap) -> bool:
+    """Whether two channels of one column are different numbers of one kind: it stands in the mapping how."""
+    return channel.quantity == other.quantity and channel.terms != other.terms
 
 
 def _encoders(mapping: Mapping) -> dict[str, int]:

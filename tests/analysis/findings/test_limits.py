@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from rig.analysis.findings.limits import judge
+from rig.analysis.findings.limits import NO_INTERVAL, judge
 from rig.analysis.findings.result import Estimate, Part, Verdict
 
 SCATTER = Part("the scatter of 27 revolutions", 1.5, "take more of them")
@@ -75,7 +75,9 @@ def test_without_known_contributions_it_says_how_the_interval_is_made() -> None:
     unknown = Estimate("swing", "Swing", 93.0, "arcsec", (math.nan, math.nan), "One turn does not repeat.")
     judged = judge([unknown], {"swing": 200.0})
     assert judged.verdict is Verdict.INCONCLUSIVE
-    assert "no interval" in judged.unsettled
+    said = "Swing 93 arcsec has no interval in this run, limit at most 200 arcsec: no verdict can be made."
+    assert judged.checks[0].sentence == said
+    assert judged.unsettled == f"{said} {NO_INTERVAL} One turn does not repeat."
 
 
 @pytest.mark.parametrize(

@@ -69,7 +69,11 @@ def test_a_folder_that_is_no_run_of_ours_is_left_out_and_said(tmp_path: Path, sh
     foreign = tmp_path / "theirs"
     foreign.mkdir()
     (foreign / "manifest.json").write_text("{}")
+    (tmp_path / "lost").mkdir()
+    (tmp_path / "lost" / "samples.parquet").write_bytes(b"")
     said: list[str] = []
     found = entries(tmp_path, said.append)
     assert [e.folder.name for e in found] == [SOME[2]]
-    assert said == ['theirs: manifest.json has no schema, expected "hdrig.run/1"']
+    nameless, theirs = said
+    assert nameless.startswith("lost: it has samples and no manifest.json; hdrig recover makes it anew")
+    assert theirs == 'theirs: manifest.json has no schema, expected "hdrig.run/1"'

@@ -50,7 +50,12 @@ def test_a_run_whose_motor_makes_no_turn_is_left_out_unless_its_output_is_held(
 ) -> None:
     piece = SimpleNamespace(theta_m=np.linspace(0.0, 2 * np.pi * turns, 50))
     made = SimpleNamespace(
-        pieces=(piece,), locked=locked, input_locked=False, procedure="kinematic_error", has=frozenset[str]()
+        pieces=(piece,),
+        locked=locked,
+        input_locked=False,
+        procedure="kinematic_error",
+        has=frozenset[str](),
+        ratio=50.0,
     )
     monkeypatch.setattr(campaign, "record", lambda run, start, hz, look: made)
     found = campaign._record(cast(Any, SimpleNamespace(name="jog", path=Path("jog"), manifest={})), 0.0)

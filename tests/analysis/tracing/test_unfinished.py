@@ -25,6 +25,19 @@ def test_how_much_of_the_plan_is_there_is_told(tmp_path: Path) -> None:
     assert unfinished(book(tmp_path, status="completed")) == ""
 
 
+def test_a_run_that_is_gone_is_told_of_and_one_that_was_renamed_is_not(tmp_path: Path) -> None:
+    runs = [{"status": "done", "run": f"0820-sentinel-X-{uid}"} for uid in ("aaaa", "bbbb", "cccc")]
+    book(tmp_path, status="completed", uid="c", runs=runs)
+    for name, uid, number in (("0820-sentinel-X-aaaa", "aaaa1", 1), ("renamed", "bbbb2", 2), ("another", "cccc3", 1)):
+        (tmp_path / name).mkdir()
+        about = {"schema": "hdrig.run/1", "uid": uid, "campaign": {"uid": "c", "run": number}}
+        (tmp_path / name / "manifest.json").write_text(json.dumps(about))
+    assert unfinished(tmp_path) == (
+        "Of the runs that campaign.json calls done 1 is not there: 0820-sentinel-X-cccc. What the others would show is "
+        "not known; hdrig campaign --resume takes it up."
+    )
+
+
 @pytest.mark.parametrize("text", [None, "", "[]", "{}", '{"runs": 3}', '{"runs": [1, {}]}', "\x00"])
 def test_what_nobody_planned_is_not_told_to_be_unfinished(text: str | None, tmp_path: Path) -> None:
     if text is not None:

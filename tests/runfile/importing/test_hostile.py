@@ -188,10 +188,15 @@ def test_a_row_with_a_cell_too_few(foreign: Foreign) -> None:
     assert "Expected 5 columns, got 4" in foreign.refused(path)
 
 
-def test_a_csv_cut_within_its_last_number_is_noted(foreign: Foreign) -> None:
+@pytest.mark.parametrize("cut", [1, 2], ids=["the line end alone", "a digit too"])
+def test_a_csv_cut_within_its_last_number_is_read_without_that_row(foreign: Foreign, cut: int) -> None:
     path = foreign.file()
-    path.write_bytes(path.read_bytes()[:-2])
-    assert any("the last line has no line end" in note for note in foreign.imported(path).manifest["notes"])
+    data = path.read_bytes()
+    path.write_bytes(data[:-cut])
+    run, rows = foreign.imported(path), data.count(b"\n") - 1
+    assert run.rows == rows - 1
+    said = f"row {rows}, the last, left out: its line has no end, so that its last number may be cut short"
+    assert said in run.manifest["notes"]
 
 
 @pytest.mark.slow

@@ -88,6 +88,7 @@ WRONG = [
     ('column = "time"', 'sum = [{column = "time"}]', "channels.t.sum: expected a column"),
     ('column = "torque"', 'colum = "torque"', "'channels.tau_l.column' is missing; is 'colum' meant for it?"),
     ('column = "torque"', 'column = "torque"\nsum = []', "channels.tau_l has column and sum; expected one of them"),
+    ('column = "torque"', 'column = "motor"', "channels.tau_l: column 'motor' is already theta_m; expected"),
     ('column = "torque"', "sum = []", "channels.tau_l.sum: expected at least one term"),
     ('column = "torque"', 'sum = [{column = "torque", scal = 2}]', "tau_l.sum[0].scal'; did you mean 'scale'?"),
     ('column = "load"', 'sum = [{column = "a"}, {column = "b"}]\nzero = 3', "channels.theta_l is a sum; modulus, bits"),
@@ -113,6 +114,14 @@ WRONG = [
 def test_what_is_not_a_mapping_is_named(wrong: str, right: str, said: str) -> None:
     assert wrong in MAPPING
     assert said in refused(MAPPING.replace(wrong, right, 1))
+
+
+def test_a_column_may_be_two_channels_where_it_is_said_why_and_be_counts_beside_their_angle() -> None:
+    twice = MAPPING.replace('column = "torque"', 'column = "motor"')
+    assert read_mapping(f'{twice}[accept]\ncolumn = "a dry run of the wiring"\n', "map.toml").columns[1] == "motor"
+    counts = f'{MAPPING}[channels.counts_m]\ncolumn = "motor"\n'
+    found = read_mapping(counts, "map.toml").channels
+    assert found["counts_m"].terms == found["theta_m"].terms
 
 
 def test_a_mapping_without_an_angle() -> None:

@@ -31,14 +31,14 @@ from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refus
 from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.runs.weights import other_weights, refuse_odd_torques
 from rig.analysis.tracing.workers import WORKERS
-from rig.core.errors import DataError, HdrigError, UsageError
+from rig.core.errors import DataError, Exit, HdrigError, UsageError
 from rig.model.effect import Moved
 from rig.runfile.copies import once
 from rig.runfile.doubt import changed
+from rig.runfile.manifest import Missing, is_nameless
 from rig.runfile.run import Run
 
 LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
-SAMPLES = ("samples.*", "journal-*.arrows")
 DAY = "[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]"  # a folder of the runs of one day
 LEANT_ON = {"t": "time column that increases", "theta_m": "θ_m", "theta_l": "θ_l", "tau_l": "τ_l"}
 """Channels that something stands in for where they were not measured, in words."""
@@ -87,7 +87,7 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     places, name = folders_of_runs(folder), folder.resolve().name  # that of `.` is empty
     opened, out = _open(places)
     opened = once(opened, lambda copy, why: out.append(left_out(copy.name, why)))
-    nameless = [*_nameless(folder), *_closed(folder)]
+    nameless = [*_nameless(folder, places), *_closed(folder)]
     out += nameless
     opened, unfit = one_rig(opened)
     refuse_other_gears(name, opened)
@@ -158,17 +158,21 @@ def _open(places: list[Path]) -> tuple[list[Run], list[Said]]:
         try:
             opened.append(Run.open(place))
         except HdrigError as error:
-            why = str(error).replace(f"{place}/", "").replace(str(place), "it")
-            out.append(left_out(place.name, why, isinstance(error, DataError)))
+            out.append(_unopened(place, error))
     return opened, out
 
 
-def _nameless(folder: Path) -> list[Said]:
-    """Folders with samples that no manifest says anything of."""
-    there = sorted({path.parent for name in SAMPLES for path in folder.glob(f"*/{name}")})
-    return [
-        left_out(p.name, "it has samples and no manifest.json") for p in there if not (p / "manifest.json").exists()
-    ]
+def _nameless(folder: Path, places: Sequence[Path]) -> list[Said]:
+    """Folders beside the runs with samples that no manifest says anything of."""
+    beside = sorted({folder, *(place.parent for place in places)})
+    there = [p for parent in beside for p in sorted(parent.glob("[!.]*")) if is_nameless(p)]
+    return [_unopened(p, Missing(p / "manifest.json")) for p in there]
+
+
+def _unopened(place: Path, error: HdrigError) -> Said:
+    """Why a folder is none of the runs; an `error` of a place that nobody may read is no damage."""
+    why = str(error).replace(f"{place}/", "").replace(str(place), "it")
+    return left_out(place.name, why, error.exit is Exit.INCOMPLETE)
 
 
 def _closed(folder: Path) -> list[Said]:
@@ -214,7 +218,9 @@ def _unfit(made: Recording) -> str:
     if made.locked and not made.input_locked and (why := _gave_way(made)):
         return why
     if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
-        return f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"
+        said = f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"
+        odd = odd_angles(made)
+        return f"{said}; {odd}" if odd else said
     return ""
 
 

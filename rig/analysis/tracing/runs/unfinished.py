@@ -1,18 +1,22 @@
-"""Whether a campaign that hdrig makes is over: a verdict on two of seven planned runs says so first."""
+"""Whether a campaign that hdrig makes is over and whole: a verdict on two of seven planned runs says so first."""
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sized
 from pathlib import Path
 from typing import Any, Final
 
 from rig.core.errors import NotReady
+from rig.core.few import few
+from rig.runfile.planned import done_runs
 from rig.runfile.process import is_being_made
 
 BOOK: Final = "campaign.json"
 OVER: Final = "completed"
+NAMED: Final = 3  # of the runs that are gone
+TAKEN_UP: Final = "hdrig campaign --resume takes it up"
 
 
 def refuse_going_on(folder: Path) -> None:
@@ -26,20 +30,24 @@ def refuse_going_on(folder: Path) -> None:
 
 
 def unfinished(folder: Path) -> str:
-    """How much of the plan is there, as a sentence; "" where it is over, or nobody planned anything."""
+    """How much of the plan is there, in sentences; "" where all of it is, or nobody planned anything."""
     book = _book(folder)
-    if not book.get("runs") or book.get("status") == OVER:
-        return ""
-    return (
-        f"The campaign is not over: {_done(book)}. What the others would show is not known; hdrig campaign --resume "
-        "takes it up."
-    )
+    said = []
+    if book.get("runs") and book.get("status") != OVER:
+        said.append(f"The campaign is not over: {_done(book)}.")
+    if gone := [run.name for run in done_runs(folder, book) if run.folder is None]:
+        said.append(f"Of the runs that {BOOK} calls done {len(gone)} {_is(gone)} not there: {few(gone, NAMED)}.")
+    return f"{' '.join(said)} What the others would show is not known; {TAKEN_UP}." if said else ""
+
+
+def _is(some: Sized) -> str:
+    return "is" if len(some) == 1 else "are"
 
 
 def _done(book: Mapping[str, Any]) -> str:
     runs = [entry for entry in book.get("runs", []) if isinstance(entry, dict)]
-    done = sum(entry.get("status") == "done" for entry in runs)
-    return f"{done} of its {len(runs)} planned runs {'is' if done == 1 else 'are'} done"
+    done = [entry for entry in runs if entry.get("status") == "done"]
+    return f"{len(done)} of its {len(runs)} planned runs {_is(done)} done"
 
 
 def _book(folder: Path) -> dict[str, Any]:

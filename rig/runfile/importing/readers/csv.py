@@ -51,11 +51,13 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
                 strings_can_be_null=True,
             ),
         )
+    rows, cut = table.num_rows, not ends_a_line(path)
+    said = f"row {rows}, the last, left out: its line has no end, so that its last number may be cut short"
     stated = dict(zip(names, units, strict=False))
     return Table(
-        {name: to_numpy(table[full]) for name, full in found.items()},
+        {name: to_numpy(table[full])[: rows - cut] for name, full in found.items()},
         {name: stated[full] for name, full in found.items() if stated.get(full)},
-        notes=() if ends_a_line(path) else ("the last line has no line end: the file may be cut short in it",),
+        notes=(said,) if cut else (),
         simulated=SIMULATED in names,
         text=True,
     )
@@ -76,7 +78,7 @@ def ends_a_line(path: Path) -> bool:
     """False when a kill may have cut the last number in two without that showing."""
     with path.open("rb") as file:
         file.seek(-4, 2)
-        return b"\n" in file.read()
+        return file.read().rstrip(b"\0").endswith((b"\n", b"\r"))  # of a wide encoding zeros are part of it
 
 
 def check_text(path: Path, encoding: str) -> None:
