@@ -23,6 +23,7 @@ def book(folder: Path, **changes: Any) -> Path:
 def test_how_much_of_the_plan_is_there_is_told(tmp_path: Path) -> None:
     assert "not over: 1 of its 3 planned runs is done" in unfinished(book(tmp_path))
     assert unfinished(book(tmp_path, status="completed")) == ""
+    assert unfinished(book(tmp_path, status="running", runs=[{"status": "done"}])) == ""  # killed when all was made
 
 
 def test_a_run_that_is_gone_is_told_of_and_one_that_was_renamed_is_not(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from rig.runfile.process import is_being_made
 
 BOOK: Final = "campaign.json"
 OVER: Final = "completed"
+DONE: Final = "done"  # of a run of it
 NAMED: Final = 3  # of the runs that are gone
 TAKEN_UP: Final = "hdrig campaign --resume takes it up"
 
@@ -33,7 +34,7 @@ def unfinished(folder: Path) -> str:
     """How much of the plan is there, in sentences; "" where all of it is, or nobody planned anything."""
     book = _book(folder)
     said = []
-    if book.get("runs") and book.get("status") != OVER:
+    if book.get("status") != OVER and any(run.get("status") != DONE for run in _entries(book)):
         said.append(f"The campaign is not over: {_done(book)}.")
     if gone := [run.name for run in done_runs(folder, book) if run.folder is None]:
         said.append(f"Of the runs that {BOOK} calls done {len(gone)} {_is(gone)} not there: {few(gone, NAMED)}.")
@@ -45,9 +46,13 @@ def _is(some: Sized) -> str:
 
 
 def _done(book: Mapping[str, Any]) -> str:
-    runs = [entry for entry in book.get("runs", []) if isinstance(entry, dict)]
-    done = [entry for entry in runs if entry.get("status") == "done"]
+    runs = _entries(book)
+    done = [entry for entry in runs if entry.get("status") == DONE]
     return f"{len(done)} of its {len(runs)} planned runs {_is(done)} done"
+
+
+def _entries(book: Mapping[str, Any]) -> list[dict[str, Any]]:
+    return [entry for entry in book.get("runs", []) if isinstance(entry, dict)]
 
 
 def _book(folder: Path) -> dict[str, Any]:
