@@ -67,15 +67,24 @@ def test_a_drag_that_grows_with_less_than_the_speed_brakes_the_motor_or_the_load
     assert ("of the load" if side else "of the motor") in drag.amount(fit).says
 
 
-def test_a_cable_gives_back_what_it_took_and_pulls_towards_where_it_was_not_wound() -> None:
+@pytest.mark.parametrize("theta_0", [0.5, 1e3])
+def test_a_cable_gives_back_what_it_took_and_pulls_towards_where_it_was_not_wound(theta_0: float) -> None:
     s, cable = motion(), WoundCable()
-    made = cable.columns(s, ())[Port.LOAD_TORQUE][:, 0]
-    np.testing.assert_array_equal(made, cable.columns(replace(s, way=-s.way), ())[Port.LOAD_TORQUE][:, 0])
-    work = np.trapezoid(made, s.theta_l)
-    assert work == pytest.approx(0.5 * (s.theta_l[-1] ** 2 - s.theta_l[0] ** 2), rel=1e-6)
-    fits = [Fit(np.array([k]), (), np.eye(1) * 1e-4, s.gear, s.ratio) for k in (0.2, -0.2)]
+    made = cable.columns(s, (theta_0,))[Port.LOAD_TORQUE][:, 0]
+    np.testing.assert_array_equal(made, cable.columns(replace(s, way=-s.way), (theta_0,))[Port.LOAD_TORQUE][:, 0])
+    work, ends = np.trapezoid(made, s.theta_l), s.theta_l[[0, -1]] / theta_0
+    assert work == pytest.approx(np.diff(theta_0**2 * np.log(np.cosh(ends)))[0], rel=1e-4)
+    fits = [Fit(np.array([k]), (theta_0,), np.eye(2) * 1e-4, s.gear, s.ratio) for k in (0.2, -0.2)]
     assert [cable.plausible(fit) for fit in fits] == [True, False]
-    assert cable.amount(fits[0]).value == pytest.approx(0.4 * np.pi)
+    assert cable.amount(fits[0]).value == pytest.approx(0.2 * theta_0 * np.tanh(2 * np.pi / theta_0))
+
+
+def test_a_cable_whose_clamp_slips_is_asked_for_where_the_output_goes_beyond_it() -> None:
+    far = [shape for (shape,) in WoundCable().shapes(replace(REACH, load_turns=3.0))]
+    assert far[1:] == [0.5, 2.0]
+    assert far[0] > 100.0
+    assert len(WoundCable().shapes(replace(REACH, load_turns=0.6))) == 3
+    assert WoundCable().shapes(replace(REACH, load_turns=0.1)) == ()
 
 
 @pytest.mark.parametrize(("law", "shape"), [(ErrorDrift(), ()), (ErrorBySpeed(), (1.0,))], ids=["time", "speed"])

@@ -133,21 +133,27 @@ class OvalPulley(Nameless):
 
 
 class WoundCable(Nameless):
-    """What is wound up by the output pulls it back, as a loom of cables about it does: k·θ_l      [tuttle1992]"""
+    """What is wound up by the output pulls it back, as a loom of cables about it does: k·θ_l, or k·θ_0·tanh(θ_l/θ_0)
+    where its clamp slips beyond      [tuttle1992]"""
 
     name: ClassVar[str] = "wound_cable"
-    in_short: ClassVar[str] = "a torque in proportion to the output's angle"
+    in_short: ClassVar[str] = "a torque that grows with the output's angle"
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = frozenset({"theta_l"})
+    shape_names: ClassVar[tuple[str, ...]] = ("theta_0",)
+    loose: ClassVar[tuple[bool, ...]] = (True,)
     FAR: Final = 0.5  # turns of the output: within less a weight pulls alike
+    SLIPS: Final = (0.5, 2.0)  # rad
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One, where the output goes far."""
-        return when(reach.load_turns > self.FAR)
+        """Straight to where the output goes, or slipping before, where it goes far."""
+        far = TURN * reach.load_turns
+        return when(reach.load_turns > self.FAR, (10.0 * far,), *((at,) for at in self.SLIPS if at < far))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
-        return {Port.LOAD_TORQUE: np.nan_to_num(signals.theta_l)[:, None]}
+        theta = np.nan_to_num(signals.theta_l)
+        return {Port.LOAD_TORQUE: shape[0] * np.tanh(theta / shape[0])[:, None]}
 
     def plausible(self, fit: Fit) -> bool:
         """It pulls back."""
@@ -155,4 +161,5 @@ class WoundCable(Nameless):
 
     def amount(self, fit: Fit) -> Amount:
         """Of a turn."""
-        return sum_of(fit, "after a turn of the output it is more by", TURN, "N·m")
+        turn = fit.shape[0] * np.tanh(TURN / fit.shape[0])
+        return sum_of(fit, "after a turn of the output it is more by", turn, "N·m")
