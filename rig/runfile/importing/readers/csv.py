@@ -51,13 +51,12 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
                 strings_can_be_null=True,
             ),
         )
-    rows, cut = table.num_rows, not ends_a_line(path)
-    said = f"row {rows}, the last, left out: its line has no end, so that its last number may be cut short"
+    said = f"row {table.num_rows}, the last, has no line end: the file may be cut short in its last number"
     stated = dict(zip(names, units, strict=False))
     return Table(
-        {name: to_numpy(table[full])[: rows - cut] for name, full in found.items()},
+        {name: to_numpy(table[full]) for name, full in found.items()},
         {name: stated[full] for name, full in found.items() if stated.get(full)},
-        notes=(said,) if cut else (),
+        notes=() if ends_a_line(path) else (said,),
         simulated=SIMULATED in names,
         text=True,
     )
