@@ -9,6 +9,7 @@ import pytest
 
 AT = """
 import os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell that runs tests behind it has it ignored
 import rig.entry
 
 class Now:
