@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from rig.campaign.journal import LOST, Journal
-from rig.core.errors import Exit, HdrigError, said_of
+from rig.core.errors import Exit
+from rig.runfile.doubt import unreadable
 from rig.runfile.planned import done_runs
-from rig.runfile.run import Run
 
 
 def lost_runs(journal: Journal) -> dict[int, str]:
@@ -16,7 +14,7 @@ def lost_runs(journal: Journal) -> dict[int, str]:
     for number, name, folder in done_runs(journal.folder, journal.book):
         if folder is None:
             found[number - 1] = f"run {number} is to be made again: its folder {name} is gone"
-        elif why := _unreadable(folder):
+        elif why := unreadable(folder):
             found[number - 1] = f"run {number} is to be made again: its folder {folder.name} cannot be used: {why}"
     return found
 
@@ -45,12 +43,3 @@ def lacking(journal: Journal) -> Exit:
     skipped = [entry["attempts"] for entry in journal.book["runs"] if entry["status"] == "skipped"]
     gone = any(attempts and attempts[-1]["status"] == LOST for attempts in skipped)
     return Exit.INCOMPLETE if gone else Exit.PASS
-
-
-def _unreadable(folder: Path) -> str:
-    """Why a run cannot be read; "" where it can."""
-    try:
-        Run.open(folder)
-    except HdrigError as error:
-        return said_of(folder, error)
-    return ""

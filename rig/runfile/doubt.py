@@ -24,7 +24,7 @@ def doubt(folder: Path, about: Mapping[str, Any]) -> str:
     there, said = (folder / SAMPLES).exists(), entry(about, SAMPLES)
     if (there and said.get("sha256")) or not (there or said):  # a folder of results alone promises no samples
         return ""
-    return _unreadable(folder)
+    return unreadable(folder)
 
 
 def quick_doubt(folder: Path, about: Mapping[str, Any]) -> str:
@@ -58,8 +58,8 @@ def changed(folder: Path, about: Mapping[str, Any]) -> str:
     return "" if same else "is not the file this run was closed with (its SHA-256 differs): see hdrig verify"
 
 
-def _unreadable(folder: Path) -> str:
-    """Of samples that nobody took a hash of, or that a journal stands in for."""
+def unreadable(folder: Path) -> str:
+    """Why a run cannot be read, in words; "" where it can. It says nothing of samples that were changed."""
     from rig.runfile.run import Run
 
     try:

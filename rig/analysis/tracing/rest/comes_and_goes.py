@@ -17,9 +17,9 @@ from scipy.special import fdtrc
 from rig.analysis.tracing.fit.channels import CHANNEL
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.rest.for_a_while import BY_CHANCE, LARGE, MOSTLY, UNEVEN, what_a_baseline_takes
+from rig.analysis.tracing.rest.in_the_floor import overtones
 from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.levels import Runs, left_by_runs
-from rig.core.units import TURN
 from rig.model.effect import Array
 
 PERIODS: Final = 3.0  # within the campaign at least: a wander comes round twice by chance
@@ -70,7 +70,9 @@ def wave_of_runs(runs: Runs) -> tuple[float, float, float] | None:
     if free < FREE:
         return None
     span, step = float(np.ptp(t)), float(np.median(np.diff(np.sort(t))))
-    tried = np.arange(PERIODS / span, 1.0 / (RUNS * step), 1.0 / (FINE * span)) if span > 0.0 < step else np.zeros(0)
+    if min(span, step) <= 0.0:  # all were taken at once
+        return None
+    tried = np.arange(PERIODS / span, 1.0 / (RUNS * step), 1.0 / (FINE * span))
     if not tried.size:
         return None
     taken, _ = np.linalg.qr(plain)
@@ -79,11 +81,10 @@ def wave_of_runs(runs: Runs) -> tuple[float, float, float] | None:
 
     def fitted(hz: float) -> tuple[float, Array]:
         """The share explained, and the wave."""
-        z = np.hstack(
-            [np.stack([np.cos(x), np.sin(x)], 1) for k in range(HARMONICS) for x in [TURN * (k + 1) * hz * t]]
-        )
-        x = np.linalg.lstsq(_beside(taken, z), left, rcond=None)[0]
-        e = left - _beside(taken, z) @ x
+        z = overtones(t, hz, HARMONICS)
+        own = _beside(taken, z)
+        x = np.linalg.lstsq(own, left, rcond=None)[0]
+        e = left - own @ x
         return 1.0 - float(e @ e) / before, np.asarray(z @ x)
 
     share, hz = max((fitted(hz)[0], hz) for hz in tried.tolist())

@@ -143,7 +143,7 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | N
     best = max((means.explained(f, HARMONICS), f) for f in near)[1]  # an overtone would be a radian out by the end
 
     def columns(rest: Rest) -> Array:
-        return _times(_overtones(rest.at["time"], best, HARMONICS), _wide(sense(rest)))
+        return _times(overtones(rest.at["time"], best, HARMONICS), _wide(sense(rest)))
 
     return in_columns(columns), best
 
@@ -174,7 +174,7 @@ class _Means:
 
     def explained(self, hz: float, harmonics: int = 1) -> float:
         """Sum of squares of rows that a wave of that frequency explains, and its overtones up to so many of them."""
-        z = self._without_zeros(_times(_overtones(self.t, hz, harmonics), self.way))
+        z = self._without_zeros(_times(overtones(self.t, hz, harmonics), self.way))
         return _explained(z, self.e) * self.rows
 
     def loudest(self, step: float) -> list[float]:
@@ -194,7 +194,7 @@ class _Means:
         return np.asarray(x - made @ (made.T @ x / np.maximum(made.sum(0), 1.0).reshape(-1, *[1] * (x.ndim - 1))))
 
 
-def _overtones(t: Array, hz: float, harmonics: int) -> Array:
+def overtones(t: Array, hz: float, harmonics: int) -> Array:
     """Cosine and sine of a wave and its overtones at times [s], (n, 2·harmonics)."""
     return np.hstack([waves(TURN * t, k * hz) for k in range(1, harmonics + 1)])
 
