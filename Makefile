@@ -31,7 +31,7 @@ blind: .venv/ready-dev  ## the tracer on thirty campaigns of an independent plan
 bench: .venv/ready-dev  ## how fast, beside C floors and other libraries (built and installed in build/bench): twenty minutes
 	$(BIN)/python -m tests.bench --table tests/bench/TABLE.md
 
-long: .venv/ready-dev  ## real time over the wire, whole loops: an hour, on a machine that does nothing else
+long: .venv/ready-dev  ## real time over the wire, whole loops, more whole traces: an hour and more, on a machine that does nothing else
 	$(BIN)/python -m pytest -m long
 
 pictures: .venv/ready-dev  ## the README's pictures, from real runs on the twin: six minutes on a quiet machine

@@ -104,6 +104,7 @@ def test_an_arms_weight_is_named_and_tells_spring_and_inertia(tmp_path: Path) ->
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_what_leans_on_the_torque_is_told_under_a_weight_nobody_declared(tmp_path: Path) -> None:
     found = joint(tmp_path, shrinks=True, stribeck=0.06)
     assert found.verdict.status is Status.EXPLAINED
@@ -126,6 +127,7 @@ def test_a_joint_that_swings_by_25_degrees_tells_its_weight_spring_and_friction(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_friction_of_the_mesh_is_searched_for_by_a_torque_that_has_the_weight(tmp_path: Path) -> None:
     found = joint(tmp_path, mesh=0.3, swing=SWING)
     assert set(found.verdict.effects) == {"gravity_unbalance", "load_dependent_friction"}
@@ -142,6 +144,7 @@ def test_a_weight_read_by_a_torque_sensor_hides_no_friction_of_the_motor(tmp_pat
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_runout_beside_a_weight_on_a_joint_that_swings_is_no_spring(tmp_path: Path) -> None:
     found = joint(tmp_path, swing=SWING, sensor=True, runout=20 * ARCSEC)
     assert set(found.verdict.effects) == {"gravity_unbalance", "output_once_per_rev"}

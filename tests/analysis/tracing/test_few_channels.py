@@ -133,7 +133,7 @@ def test_a_campaign_of_one_angle_and_no_torque_is_refused_in_words(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("lacking", ["tau_l", pytest.param("theta_l", marks=pytest.mark.long)])
+@pytest.mark.parametrize("lacking", [pytest.param(name, marks=pytest.mark.long) for name in ("tau_l", "theta_l")])
 def test_one_run_may_lack_a_channel(tmp_path: Path, shared: Path, lacking: str) -> None:
     names = [f"{kind}_{k}" for kind in ("slow_ke", "load_10nm", "speed_120rpm", "speed_400rpm") for k in (1, 2)]
     reduced(tmp_path, shared / "cases" / "open-3", names[1:], ())
@@ -184,7 +184,7 @@ def gauges_alone(to: Path, timed: bool) -> Path:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("timed", [False, True])
+@pytest.mark.parametrize("timed", [pytest.param(False, marks=pytest.mark.long), True])
 def test_gauges_alone_give_their_ripple_its_lag_and_their_drift_and_no_name(tmp_path: Path, timed: bool) -> None:
     found = checked(trace(gauges_alone(tmp_path, timed)))
     assert found.verdict.effects == ()

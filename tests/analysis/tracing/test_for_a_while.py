@@ -67,6 +67,7 @@ def test_its_sentence_has_the_torque_and_both_times() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_brake_that_drags_for_a_while_below_the_floor_of_the_runs_is_told(tmp_path: Path, shared: Path) -> None:
     campaign = shared / "cases" / "open-1"
     first = min(started(run) for run in campaign.iterdir() if run.is_dir())

@@ -84,6 +84,7 @@ def test_a_grease_that_thins_is_told_by_the_speed_and_not_named(tmp_path: Path) 
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_drive_that_warms_while_all_speeds_are_gone_through_is_named(tmp_path: Path) -> None:
     found = measured(tmp_path, warming)
     assert (found.verdict.status, found.verdict.effects) == (Status.EXPLAINED, ("thermal_friction_drift",))
@@ -93,6 +94,7 @@ def test_a_drive_that_warms_while_all_speeds_are_gone_through_is_named(tmp_path:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_no_torque_constant_is_blamed_where_nothing_else_tells_the_torque(tmp_path: Path) -> None:
     found = measured(tmp_path, waving)
     assert "torque constant" not in found.verdict.sentence

@@ -313,6 +313,7 @@ def test_each_step_is_told_to_the_encoder_that_made_it_though_no_run_is_repeated
 
 @pytest.mark.slow
 @pytest.mark.parametrize("times", [2, pytest.param(1, marks=pytest.mark.long)], ids=["repeated", "once"])
+@pytest.mark.long
 def test_a_single_loss_in_a_fitted_run_is_told_where_its_repeat_has_none_or_nothing_was_repeated(
     tmp_path: Path, shared: Path, times: int
 ) -> None:

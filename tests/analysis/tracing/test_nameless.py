@@ -188,6 +188,7 @@ def test_readings_of_two_gains_are_told_and_not_named(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_sensor_that_reads_more_one_way_in_slow_runs_and_lock_tests_alone_is_no_stiffness_of_an_angle(
     shared: Path, tmp_path: Path
 ) -> None:
@@ -210,6 +211,7 @@ def test_a_torque_sensor_whose_scale_is_off_is_told_with_how_much(shared: Path, 
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_weight_that_shifts_the_load_angle_is_neither_a_spring_nor_a_creep(shared: Path, tmp_path: Path) -> None:
     def aside(c: Columns, began: float) -> Columns:
         locked, weight = np.ptp(c["theta_l"]) < 1e-3, round(float(c["tau_l"].mean()))  # a held one has none hung on it
@@ -224,6 +226,7 @@ def test_a_weight_that_shifts_the_load_angle_is_neither_a_spring_nor_a_creep(sha
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_load_angle_to_another_scale_loses_no_counts_and_comes_late_at_no_speed(shared: Path, tmp_path: Path) -> None:
     def rounded(c: Columns, began: float) -> Columns:
         return {"theta_l": c["theta_l"] * (1 + 9e-6)}
@@ -237,6 +240,7 @@ def test_a_load_angle_to_another_scale_loses_no_counts_and_comes_late_at_no_spee
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_torque_sensor_that_is_thrown_outward_goes_with_the_speed_and_drags_no_motor(
     shared: Path, tmp_path: Path
 ) -> None:
@@ -252,6 +256,7 @@ def test_a_torque_sensor_that_is_thrown_outward_goes_with_the_speed_and_drags_no
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_torque_sensor_whose_own_bearing_drags_winds_nothing_up(shared: Path, tmp_path: Path) -> None:
     def dragged(c: Columns, began: float) -> Columns:
         locked = np.ptp(c["theta_l"]) < 1e-3
@@ -279,6 +284,7 @@ def test_a_sensor_that_feels_bending_by_as_much_as_it_carries_has_crosstalk(shar
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_torque_sensor_that_compresses_is_told_and_no_spring_is_named(shared: Path, tmp_path: Path) -> None:
     found = spiked(tmp_path, shared / "cases" / "open-1", sensor_curve)
     told = CONFOUNDERS["sensor_curve"]
@@ -314,6 +320,7 @@ def test_a_dent_in_a_race_is_told_and_no_ripple_is_named_for_its_lever(shared: P
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_gauges_that_feel_the_wave_generator_are_told_with_how_much(shared: Path, tmp_path: Path) -> None:
     found = spiked(tmp_path, shared / "cases" / "open-1", sensor_ripple, (*SOME, "lock_60_1", "lock_60_2"))
     told = CONFOUNDERS["sensor_ripple"]

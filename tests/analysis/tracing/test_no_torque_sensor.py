@@ -90,6 +90,7 @@ def test_a_run_goes_by_it_where_nobody_read_the_torque_and_its_noise_has_none_of
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_kinematic_error_that_shrinks_is_as_large_as_by_a_torque_sensor(tmp_path: Path, shared: Path) -> None:
     truth = json.loads((shared / "cases" / "TRUTH.json").read_text())["open-2"]["parameters"]
     loaded = [f"load_{load}nm_{i}" for load in ("2.5", "5", "20") for i in (1, 2)]

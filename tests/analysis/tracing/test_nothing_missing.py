@@ -38,7 +38,7 @@ def test_numbers_made_up_without_any_noise_have_nothing_hidden_in_their_rounding
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("height", "where"), [(0.16, "load_angle"), (0.0, None)])
+@pytest.mark.parametrize(("height", "where"), [pytest.param(0.16, "load_angle", marks=pytest.mark.long), (0.0, None)])
 def test_what_is_a_little_above_the_floor_is_said_where_one_coordinate_foretells_it(
     tmp_path: Path, shared: Path, height: float, where: str | None
 ) -> None:

@@ -56,7 +56,7 @@ def softer(c: Columns, warmth: float) -> Columns:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("logged", [True, pytest.param(False, marks=pytest.mark.long)])
+@pytest.mark.parametrize("logged", [pytest.param(logged, marks=pytest.mark.long) for logged in (True, False)])
 def test_a_stiffness_that_follows_a_logged_temperature_drifts_with_no_time(
     logged: bool, tmp_path: Path, shared: Path
 ) -> None:

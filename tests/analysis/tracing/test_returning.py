@@ -96,6 +96,7 @@ def test_three_runs_are_too_few_to_say_how_far_they_differ() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_intervals_cover() -> None:
     """Least squares' own hold it seldom; what is told is as wide as both ways of finding it are uncertain."""
     inside, before = 0, 0

@@ -35,6 +35,7 @@ def test_constant_load_and_speed_parts_and_the_lag_come_back(rng: np.random.Gene
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_intervals_of_the_amplitudes_cover_and_are_no_wider_than_they_have_to_be():
     true = {"constant": 0.2, "per_load": 0.01, "per_speed_squared": 5e-5}
     off = {name: [] for name in true}

@@ -83,6 +83,7 @@ def test_a_runout_and_the_flexspline_are_named_and_a_weight_is_its_rival(tmp_pat
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_balls_of_the_wave_generators_bearing_are_an_order_and_no_resonance(tmp_path: Path) -> None:
     found = bench(tmp_path, lambda motor, t: 4 * np.cos(12.3737 * motor))
     assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())
