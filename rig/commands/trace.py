@@ -96,7 +96,7 @@ def tell(found: Trace, first: str = "") -> None:
     from rig.analysis.tracing.outcome.without import counted_out
     from rig.report.trace.channels import held_out_with
     from rig.report.trace.sizes import said
-    from rig.report.trace.words import added, gloss, not_read, remainder, runs_read
+    from rig.report.trace.words import added, beside_laws, gloss, not_read, remainder, runs_read
 
     out = f", {counted_out(found)} left out" if found.left_out else ""
     print(f"{'SIMULATED ' if found.simulated else ''}{found.campaign}: {found.verdict.status.replace('_', ' ')}{out}")
@@ -107,8 +107,8 @@ def tell(found: Trace, first: str = "") -> None:
     print(f"  {found.verdict.sentence}")
     for law in found.law:
         print(f"  {law}")
-    if found.verdict.status == "unknown_effect" and found.added_curves and not found.law:
-        print(f"  {added(found)}")
+    if found.verdict.status == "unknown_effect" and found.added_curves:
+        print(f"  {beside_laws(found) if found.law else added(found)}")
     if rest := remainder(found):
         print(f"  {rest}")
     for effect in found.effects:

@@ -68,6 +68,8 @@ REFERENCES: dict[str, str] = {
     "IEEE Trans. Information Theory 20 (1974) 591-598",
     "anderson1965": "D. G. Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560",
     "efron1982": "B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM (1982)",
+    "hastie2009": "T. Hastie, R. Tibshirani, J. Friedman, The Elements of Statistical Learning, 2nd ed., "
+    "Springer (2009)",
     "rasmussen2006": "C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, MIT Press (2006)",
     "vig1992": "J. R. Vig, Introduction to quartz frequency standards, US Army Research Laboratory, SLCET-TR-92-1 "
     "(1992)",

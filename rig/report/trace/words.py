@@ -158,7 +158,8 @@ def added(trace: Trace) -> str:
             beside = f" beside {names}" if names else ""
             where = f"{place(v.coordinate)}{_pitch(v)}"
             if trace.law:
-                return f"A law that is no effect of the library{beside}. {' '.join(trace.law)}"
+                law = f"A law that is no effect of the library{beside}. {' '.join(trace.law)}"
+                return f"{law} {beside_laws(trace)}".rstrip()
             if not trace.added_curves:
                 also = f"{humanise(names)} was added; no" if names else "Nothing was added: no"
                 return f"{also} curve in {where} foretells what is left in runs the fit did not see."
@@ -196,18 +197,31 @@ def under_load(trace: Trace) -> str:
     )
 
 
+def beside_laws(trace: Trace) -> str:
+    """Curves without a name beside laws that have none; "" without any."""
+    if not trace.added_curves:
+        return ""
+    return _curves(trace, " beside it", f"{place(trace.added_curves[0].coordinate)}{_pitch(trace.added_curves[0])}")
+
+
 def _curves(trace: Trace, beside: str, where: str) -> str:
     """The curves without a name: the first along the verdict's coordinate, and what each of the others leaves."""
-    more = trace.added_curves[1:]
+    first, *more = trace.added_curves
+    where += _as_what(first)
     if not more:
         return f"A curve without a name{beside}, in {where}; no physics is claimed for it."
-    others = listed([f"{place(c.coordinate)}{_pitch(c)}" for c in more])
+    others = listed([f"{place(c.coordinate)}{_pitch(c)}{_as_what(c)}" for c in more])
     last = {c.channel: c.over_floor for c in trace.added_curves}
     left = listed([f"{c.name.lower()} {plain(last[c.sensor], 3)} times" for c in CHANNELS if c.sensor in last])
     return (
         f"A curve without a name{beside}, in {where}, and beside it {'another' if len(more) == 1 else 'others'} in "
         f"{others}: {left} its floor with all of them. No physics is claimed for them."
     )
+
+
+def _as_what(curve: Curve) -> str:
+    """Where it acts, of a form that was fitted with everything else."""
+    return f" ({curve.acts}: of all that may act there, what the fitted runs want most)" if curve.acts else ""
 
 
 def _beside_names(trace: Trace) -> str:

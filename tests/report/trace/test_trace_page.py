@@ -107,9 +107,11 @@ def test_no_share_in_the_json_is_above_all() -> None:
 
 def test_a_law_without_a_name_is_told_in_the_place_of_the_curve() -> None:
     said = "The torque sensor has two gains: for positive torque the gain is larger by 2.0 ± 0.1 %."
-    words = read(bare(replace(made_up.unknown(), law=(said,)))).words
+    words = read(bare(replace(made_up.unknown(), law=(said,), added_curves=()))).words
     assert f"A law that is no effect of the library. {said}" in words
     assert "A curve without a name" not in words
+    beside = read(bare(replace(made_up.unknown(), law=(said,)))).words
+    assert f"{said} A curve without a name beside it, in the load angle, order 37 per turn; no physics" in beside
 
 
 def test_a_curve_that_was_not_added_is_not_said_to_be() -> None:

@@ -70,7 +70,7 @@ class CouplingPlay(Nameless):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading, for half the play of 1 rad."""
-        return {Port.READS_THETA_L: -_way_of_the_output(signals)}
+        return {Port.READS_THETA_L: -way_of_the_output(signals)}
 
     def plausible(self, fit: Fit) -> bool:
         """It stays behind."""
@@ -99,7 +99,7 @@ class DraggedSensor(OfTheTorqueSensor):
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
-        return {Port.READS_TAU_L: _way_of_the_output(signals)}
+        return {Port.READS_TAU_L: way_of_the_output(signals)}
 
     def plausible(self, fit: Fit) -> bool:
         """It drags."""
@@ -110,7 +110,7 @@ class DraggedSensor(OfTheTorqueSensor):
         return sum_of(fit, "it is", 1, "N·m")
 
 
-def _way_of_the_output(signals: Signals) -> Array:
+def way_of_the_output(signals: Signals) -> Array:
     """−1 to 1 (n, 1): its sign since it last moved by more than 2·TURNED; of a locked output next to nothing."""
     angle = np.ascontiguousarray(np.nan_to_num(signals.theta_l))
     return np.asarray((angle - play(angle, TURNED)) / TURNED)[:, None]

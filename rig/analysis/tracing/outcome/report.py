@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit import parameters
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
@@ -32,6 +33,7 @@ from rig.analysis.tracing.rest.lives import lives_in
 from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.candidates import candidates
+from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.confounders import confounders_in
 from rig.analysis.tracing.selection.one_sided import COGGING, one_sided
 from rig.analysis.tracing.selection.own_scores import own_scores
@@ -58,7 +60,7 @@ def report(
     baseline = honest(parameters.inertias_by_what_returns(empty, p.split.fitted), fitted_runs)
     conclusion = decide(Asked(p, s, ranked, scores, before, after, p.floors, found, fitted))
     conclusion, decided = undecided(p, conclusion, after, beyond(p, baseline))
-    beside = unnamed(p, s, after, conclusion.home) if conclusion.home else Unnamed(after)
+    beside = _beside(p, s, after, conclusion)
     final = beside.after
     confounded = frozenset(name for confounder in confounders_in(s) for name in confounder.mimics)
     words, first = p.own.parameters | dict(fitted), errors(p.eq, p.held_out, before)
@@ -108,6 +110,12 @@ def report(
         ),
         curves={name: x for name, x in drawn.items() if decided or not name.startswith("share")},
     )
+
+
+def _beside(p: Prepared, s: Solution, after: dict[Key, Array], conclusion: Conclusion) -> Unnamed:
+    """What has no name, where something is left that lives somewhere."""
+    lives = conclusion.home is not None or conclusion.verdict.status == Status.UNKNOWN
+    return unnamed(p, s, after, conclusion.home, conclusion.verdict.coordinate) if lives else Unnamed(after)
 
 
 def _notes(

@@ -48,13 +48,16 @@ class Errors:
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve without a name along a coordinate, in one channel; what that leaves of unseen runs, RMS over floor."""
+    """A curve without a name along a coordinate, in one channel; what that leaves of unseen runs, RMS over floor.
+    `acts`: where it acts and as what, of a form that was fitted with everything else; "" of a curve in the channel
+    alone."""
 
     coordinate: str
     channel: str  # theta_l, tau_l or tau_m
     order: float | None  # cycles per turn of that coordinate
     frequency_hz: float | None
     over_floor: float
+    acts: str = ""
 
 
 @dataclass(frozen=True)

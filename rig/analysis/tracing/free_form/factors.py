@@ -1,0 +1,72 @@
+"""What a form is made of: hats over a range, waves of an angle, what wears off with way or time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, since_turned
+from rig.model.effect import Array, Signals
+from rig.model.waves import powers
+
+Factor = Callable[[Signals], Array]
+"""Columns (n, k) of a piece of a run."""
+
+WAYS: Final = (2.0, 6.0, 20.0, 60.0)  # rad of the motor since it turned back, within which all but a third is gone
+TIMES: Final = (0.6, 1.5, 4.0, 10.0, 30.0)  # s since the run began, the same
+
+
+def hats(x: Array, knots: Array) -> Array:
+    """1 at one knot each and 0 at the others, straight between, (n, k); level beyond the last."""
+    return np.stack([np.interp(np.nan_to_num(x), knots, one) for one in np.eye(knots.size)], 1)
+
+
+def motor_waves(s: Signals, first: int, last: int, slopes: bool = False) -> Array:
+    """Cosine and sine of orders `first` to `last` of the motor, as far as rows have kept them, or their slopes;
+    (n, 2·orders)."""
+    made = powers(s.theta_m, last, slopes=slopes)[:, 2 * (first - 1) :]
+    if s.thinned == 1:
+        return made
+    kept = np.stack([s.kept(float(k), s.omega_m) for k in range(first, last + 1)], 1)
+    return np.asarray(made * np.repeat(kept, 2, axis=1))
+
+
+def load_waves(s: Signals, last: int) -> Array:
+    """Cosine and sine of the orders of the output up to `last`, (n, 2·last)."""
+    return powers(np.nan_to_num(s.theta_l), last)
+
+
+def turned(s: Signals, finer: int, also_at_first: bool) -> Array:
+    """What wears off on the way since the motor turned back, (n, k); none before it first did, or `also_at_first` as if
+    it had when the run began."""
+    gone = _gone(since_turned(np.nan_to_num(s.theta_m), s.way, np.zeros(s.t.size)), WAYS, finer)
+    if also_at_first:
+        return gone
+    back = np.flatnonzero(np.diff(np.sign(s.way[s.way != 0])))
+    first = np.flatnonzero(s.way != 0)[back[0] + 1] if back.size else s.t.size
+    return np.asarray(gone * (np.arange(s.t.size) >= first)[:, None])
+
+
+def began(s: Signals, finer: int) -> Array:
+    """What wears off in the time since the run began, (n, k)."""
+    return _gone(s.t - s.t[0], TIMES, finer)
+
+
+def _gone(x: Array, reaches: tuple[float, ...], finer: int) -> Array:
+    """exp(−x/reach) for each of them and, `finer`, as many again between, (n, k)."""
+    between = np.exp(np.interp(np.arange(0, len(reaches) - 1 + 1e-9, 1 / finer), range(len(reaches)), np.log(reaches)))
+    return np.asarray(np.exp(-x[:, None] / between))
+
+
+def past_torque(s: Signals) -> Array:
+    """What the torque through the gear has been: plays and followers of it, N·m, (n, k)."""
+    torque, run = np.nan_to_num(s.torque), np.zeros(s.t.size)
+    plays = [behind(torque, run, width) for width in WIDTHS]
+    return np.stack([*plays, *(relaxing(torque, run, s.dt, leak) for leak in LEAKS)], 1)
+
+
+def times(a: Array, b: Array) -> Array:
+    """Every column of the one times every column of the other, (n, k·m)."""
+    return np.asarray((a[:, :, None] * b[:, None, :]).reshape(a.shape[0], -1))
