@@ -1,0 +1,130 @@
+"""Forms of many numbers, one at each port: where what has no name acts is told by what all channels say of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.free_form.factors import began, hats, motor_waves, past_torque, turned
+from rig.analysis.tracing.free_form.forms import forms
+from rig.analysis.tracing.free_form.ranges import Ranges
+from rig.analysis.tracing.rest.home import SIMPLE
+from rig.analysis.tracing.runs.recording import Recording
+from rig.model.effect import Port, Signals
+from tests.analysis.tracing.spiked import Columns, spiked
+from tests.contract.test_effects import motion
+
+ONE_WAY = motion(1.0)
+SWING = 30.0 * np.sin(0.6 * ONE_WAY.t)
+FORTH_AND_BACK = replace(
+    ONE_WAY,
+    theta_m=SWING,
+    theta_l=SWING / 50,
+    omega_m=18.0 * np.cos(0.6 * ONE_WAY.t),
+    way=np.sign(np.cos(0.6 * ONE_WAY.t)),
+)
+RUNS = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "load_20nm_2", "speed_60rpm_1", "speed_60rpm_2", "lock_60_1")
+DRAWN = [name for name in SIMPLE if name != "time_periodic"]  # of what comes by the clock each run has its own phase
+
+
+class Seen(Ranges):
+    """What one piece of a run covers."""
+
+    def __init__(self, piece: Signals) -> None:
+        object.__setattr__(self, "piece", piece)
+
+    def _values(self, of):  # type: ignore[no-untyped-def]
+        x = np.asarray(of(self.piece))
+        return x[np.isfinite(x)]
+
+
+@pytest.mark.parametrize("coordinate", DRAWN)
+def test_every_form_is_finite_and_has_as_many_columns_at_all_its_ports(coordinate: str) -> None:
+    made = forms(coordinate, Seen(FORTH_AND_BACK), 1)
+    assert len({form.words for form in made}) == len(made) > 10
+    for form in made:
+        columns = form.columns(FORTH_AND_BACK, ())
+        assert len({z.shape for z in columns.values()}) == 1
+        assert all(np.isfinite(z).all() for z in columns.values()), form.words
+        assert (Port.LEVER in columns) == (Port.KINEMATIC_ERROR in columns)
+
+
+@pytest.mark.parametrize("coordinate", DRAWN)
+def test_finer_ones_are_the_same_forms_with_more_columns(coordinate: str) -> None:
+    coarse, fine = (forms(coordinate, Seen(FORTH_AND_BACK), finer) for finer in (1, 2))
+    assert [form.words for form in coarse] == [form.words for form in fine]
+    wide = [[next(iter(f.columns(FORTH_AND_BACK, ()).values())).shape[1] for f in some] for some in (coarse, fine)]
+    assert all(a <= b for a, b in zip(*wide, strict=True))
+
+
+def test_nothing_is_drawn_along_the_clock() -> None:
+    assert forms("time_periodic", Seen(FORTH_AND_BACK), 1) == []
+
+
+def test_the_slope_of_a_form_is_that_of_its_waves() -> None:
+    angle, step = FORTH_AND_BACK.theta_m, 1e-6
+    at = np.argsort(angle)[::50]
+    slopes = motor_waves(FORTH_AND_BACK, 3, 5, slopes=True)[at]
+    orders = np.repeat([3, 4, 5], 2)
+    phase = np.tile([0.0, -np.pi / 2], 3)
+    by_hand = [
+        (np.cos(orders * (x + step) + phase) - np.cos(orders * (x - step) + phase)) / 2 / step for x in angle[at]
+    ]
+    np.testing.assert_allclose(slopes, by_hand, atol=1e-6)
+
+
+def test_hats_share_every_row_between_two_knots_and_are_level_beyond() -> None:
+    made = hats(np.array([-5.0, 0.0, 0.25, 3.0, np.nan]), np.array([0.0, 1.0, 2.0]))
+    np.testing.assert_allclose(made.sum(1), 1.0)
+    np.testing.assert_allclose(made[[0, 2, 3]], [[1, 0, 0], [0.75, 0.25, 0], [0, 0, 1]])
+
+
+def test_what_wears_off_since_a_reversal_is_none_before_the_first_unless_asked() -> None:
+    s = FORTH_AND_BACK
+    back = int(np.flatnonzero(np.diff(s.way))[0])
+    only, also = turned(s, 1, False), turned(s, 1, True)
+    assert not only[: back + 1].any()
+    assert only[back + 1].min() > 0.99
+    assert not turned(ONE_WAY, 1, False).any()
+    assert also[0].min() > 0.99
+    np.testing.assert_array_equal(only[-100:], also[-100:])
+    assert turned(s, 2, True).shape[1] == 2 * also.shape[1] - 1
+
+
+def test_what_wears_off_since_a_run_began_is_all_there_at_first() -> None:
+    made = began(FORTH_AND_BACK, 1)
+    np.testing.assert_allclose(made[0], 1.0)
+    assert (np.diff(made, axis=0) < 0).all()
+
+
+def test_a_torque_that_never_changed_has_no_past() -> None:
+    assert np.isfinite(past_torque(FORTH_AND_BACK)).all()
+
+
+def test_knots_of_what_wavers_about_a_few_speeds_are_those_speeds(rng: np.random.Generator) -> None:
+    run = Recording.__new__(Recording)
+    seen = Ranges((run,))
+    x = np.concatenate([v + 0.001 * rng.standard_normal(1000) for v in (1.0, 10.0, 40.0)])
+    object.__setattr__(run, "pieces", (FORTH_AND_BACK,))
+    knots = seen.crowded(lambda _: np.repeat(x, 7), 9)
+    assert knots == pytest.approx([1.0, 10.0, 40.0], abs=0.01)
+    assert seen.crowded(lambda _: np.ones(100), 9).size == 0
+    assert seen.even(lambda _: np.full(100, np.nan), 9).size == 0
+
+
+def gauges(c: Columns, began: float) -> Columns:
+    """The torque sensor reads two orders of the motor that no law has."""
+    return {"tau_l": c["tau_l"] + 0.4 * np.cos(3 * c["theta_m"]) + 0.3 * np.sin(7 * c["theta_m"])}
+
+
+@pytest.mark.slow
+def test_what_is_in_one_sensor_is_drawn_there_and_gone_from_every_channel(tmp_path: Path, shared: Path) -> None:
+    found = spiked(tmp_path / "gauges", shared / "cases" / "open-1", gauges, RUNS)
+    assert (found.verdict.status, found.verdict.coordinate) == (Status.UNKNOWN, "motor_angle")
+    assert found.added_curves[0].acts == "the reading of the torque sensor: waves of the motor's angle"
+    assert found.ratios_before["tau_l"] > 4.0
+    assert all(found.ratios_after[channel] < 1.2 for channel in ("theta_l", "tau_m", "tau_l"))
