@@ -92,7 +92,7 @@ def search_some(
     d: Design, bank: Bank, runs: Sequence[int], covered: Reach, floors: Mapping[Key, float], **how: Any
 ) -> Found:
     """As `search` of `d`, on `some` of its rows; what is found is fitted to all of them."""
-    few, whole = _few(d, runs)
+    few, whole = of_some(d, runs)
     found = search(few, bank, runs, tuple(few.y), covered, floors, **how)
     if found.solution.design.terms == d.terms:
         return replace(found, solution=fit(d))
@@ -103,11 +103,11 @@ def search_some(
 
 def ranking_of_some(d: Design, bank: Bank, runs: Sequence[int], covered: Reach, nearly: float) -> tuple[Scored, ...]:
     """As `ranking_beside` the design, on `some` of its rows."""
-    few, _ = _few(d, runs)
+    few, _ = of_some(d, runs)
     return ranking_beside(few, bank, runs, tuple(few.y), covered, nearly)
 
 
-def _few(d: Design, runs: Sequence[int]) -> tuple[Design, bool]:
+def of_some(d: Design, runs: Sequence[int]) -> tuple[Design, bool]:
     """A design with `some` of its rows, and whether they are all."""
     eq = some(d.eq, runs)
     whole = all(eq.rows[key].y.size == y.size for key, y in d.y.items())

@@ -13,7 +13,8 @@ from typing import Final
 
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
-from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.fit.model import Solution, fit
+from rig.analysis.tracing.fit.some import of_some
 from rig.analysis.tracing.free_form.drawn import drawn
 from rig.analysis.tracing.outcome.result import Curve
 from rig.analysis.tracing.prepared import Prepared
@@ -38,14 +39,23 @@ class Unnamed:
 def unnamed(p: Prepared, s: Solution, after: dict[Key, Array], first: Home | None, coordinate: str | None) -> Unnamed:
     """What lies along the `first`, or where a law said it all along its `coordinate`, and what more there is while a
     channel of unseen runs is loud."""
-    s, out = _forms(p, s, Unnamed(after), first.coordinate if first else coordinate)
+    formed, out = _forms(p, s, Unnamed(after), first.coordinate if first else coordinate)
     if out.curves or first is None:
-        first = _next(p, s, out)
+        s, first = formed, _next(p, formed, out)
     return _curves(p, s, out, first) if first is not None else out
+
+
+def _of_some(p: Prepared, s: Solution) -> Solution:
+    """The model fitted to no more rows than a search: forms have hundreds of columns, and a day of rows has no room for
+    them."""
+    few, whole = of_some(s.design, p.split.fitted)
+    return s if whole else fit(few)
 
 
 def _forms(p: Prepared, s: Solution, out: Unnamed, coordinate: str | None) -> tuple[Solution, Unnamed]:
     """The model with forms, and what they leave."""
+    if coordinate is not None and _loudest(p, out.after)[1] > NOTEWORTHY:
+        s = _of_some(p, s)
     while coordinate is not None and len(out.curves) < MOST and _loudest(p, out.after)[1] > NOTEWORTHY:
         channel, _ = _loudest(p, out.after)
         found = drawn(p, s, out.after, coordinate)
@@ -61,25 +71,25 @@ def _forms(p: Prepared, s: Solution, out: Unnamed, coordinate: str | None) -> tu
 
 def _next(p: Prepared, s: Solution, out: Unnamed) -> Home | None:
     """Where what is left beside forms lives; None where too little is, or it lives nowhere."""
-    if _loudest(p, out.after)[1] <= EXPLAINED:
+    if _loudest(p, out.after)[1] <= NOTEWORTHY:
         return None
-    where = home(p.eq, {key: s.residual(key) for key in s.keys}, p.floors | p.held_out.floors)
+    where = home(s.design.eq, {key: s.residual(key) for key in s.keys}, p.floors | p.held_out.floors)
     return where[0] if where else None
 
 
 def _curves(p: Prepared, s: Solution, out: Unnamed, where: Home) -> Unnamed:
     """The curve along `where`, and what more there is."""
-    floors = p.floors | p.held_out.floors
+    eq, floors = s.design.eq, p.floors | p.held_out.floors
     left: Mapping[Key, Array] = {key: s.residual(key) for key in s.keys}
     while len(out.curves) < MOST:
         mine = [key for key in out.after if key[1] == where.channel]
-        beside = unseen_beside(p.eq, left, out.after, floors, where.channel).without(where)
+        beside = unseen_beside(eq, left, out.after, floors, where.channel).without(where)
         now = p.held_out.ratio(beside.unseen, mine)
         if not now < (WORTH if out.curves else 1.0) * p.held_out.ratio(out.after, mine):
             break
         curve = Curve(where.coordinate, CHANNEL[where.channel].key, where.order, where.frequency_hz, now)
         left, out = beside.fitted, Unnamed(beside.unseen, (*out.curves, curve))
-        if _loudest(p, out.after)[1] <= EXPLAINED or not (more := home(p.eq, left, floors)):
+        if _loudest(p, out.after)[1] <= EXPLAINED or not (more := home(eq, left, floors)):
             break
         where = more[0]
     return out
