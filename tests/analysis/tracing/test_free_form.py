@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Final, cast
 
 import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.free_form import plainer as plainer_of
 from rig.analysis.tracing.free_form.factors import began, hats, motor_waves, past_torque, turned
 from rig.analysis.tracing.free_form.forms import forms
+from rig.analysis.tracing.free_form.plainer import plainer
 from rig.analysis.tracing.free_form.ranges import Ranges
-from rig.analysis.tracing.rest.home import SIMPLE
+from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.rest.home import SIMPLE, Home
 from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import Port, Signals
 from tests.analysis.tracing.spiked import Columns, spiked
@@ -128,3 +134,28 @@ def test_what_is_in_one_sensor_is_drawn_there_and_gone_from_every_channel(tmp_pa
     assert found.added_curves[0].acts == "the reading of the torque sensor: waves of the motor's angle"
     assert found.ratios_before["tau_l"] > 4.0
     assert all(found.ratios_after[channel] < 1.2 for channel in ("theta_l", "tau_m", "tau_l"))
+
+
+NOBODY: Final = cast("Prepared", None), cast("Solution", None)
+
+
+@pytest.mark.parametrize(("speed", "expected"), [(100.0, "speed"), (75.0, None)])
+def test_time_is_said_only_where_no_plain_form_has_far_more_evidence(
+    speed: float, expected: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    evidence = {"time": 70.0, "speed": speed, "load": 20.0}
+    monkeypatch.setattr(plainer_of, "of_some_rows", lambda p, s: s)
+    monkeypatch.setattr(
+        plainer_of, "possible", lambda p, name: [SimpleNamespace(surface=False, words=name)] if name in evidence else []
+    )
+    monkeypatch.setattr(plainer_of, "fitted", lambda p, s, form: SimpleNamespace(evidence=evidence[form.words]))
+    monkeypatch.setattr(plainer_of, "_share", lambda p, s, one, channel: 0.8)
+    found = plainer(*NOBODY, Home("time", "M", 0.9))
+    assert (found.coordinate if found else None) == expected
+    if found:
+        assert (found.channel, found.share) == ("M", 0.8)
+
+
+@pytest.mark.parametrize("home", [Home("speed", "M", 0.9), Home("time", "M", 0.9, first=True)])
+def test_what_is_plain_already_or_began_at_one_moment_is_not_asked_again(home: Home) -> None:
+    assert plainer(*NOBODY, home) is None

@@ -59,6 +59,7 @@ PLACES: Final = (
     At(Port.MOTOR_TORQUE, "a drag of the motor", lambda s: s.omega_m, MOTOR),
     FRICTION,
     At(Port.LOAD_TORQUE, "a torque on the load", _one, SENSOR),
+    At(Port.LOAD_TORQUE, "a torque on the load, times what hangs there", lambda s: s.tau_ext, SENSOR),
     At(Port.LOAD_TORQUE, "an inertia of the load", lambda s: s.alpha_l, SENSOR),
     ANGLE,
     At(Port.READS_THETA_L, "the reading of the angles, by the direction", _way, ANGLES),

@@ -13,9 +13,9 @@ from typing import Final
 
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
 from rig.analysis.tracing.fit.equations import Key
-from rig.analysis.tracing.fit.model import Solution, fit
-from rig.analysis.tracing.fit.some import of_some
+from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.free_form.drawn import drawn
+from rig.analysis.tracing.free_form.fitted import of_some_rows
 from rig.analysis.tracing.outcome.result import Curve
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.foretold import unseen_beside
@@ -45,17 +45,10 @@ def unnamed(p: Prepared, s: Solution, after: dict[Key, Array], first: Home | Non
     return _curves(p, s, out, first) if first is not None else out
 
 
-def _of_some(p: Prepared, s: Solution) -> Solution:
-    """The model fitted to no more rows than a search: forms have hundreds of columns, and a day of rows has no room for
-    them."""
-    few, whole = of_some(s.design, p.split.fitted)
-    return s if whole else fit(few)
-
-
 def _forms(p: Prepared, s: Solution, out: Unnamed, coordinate: str | None) -> tuple[Solution, Unnamed]:
     """The model with forms, and what they leave."""
     if coordinate is not None and _loudest(p, out.after)[1] > NOTEWORTHY:
-        s = _of_some(p, s)
+        s = of_some_rows(p, s)
     while coordinate is not None and len(out.curves) < MOST and _loudest(p, out.after)[1] > NOTEWORTHY:
         channel, _ = _loudest(p, out.after)
         found = drawn(p, s, out.after, coordinate)

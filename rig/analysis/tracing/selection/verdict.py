@@ -12,6 +12,7 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
+from rig.analysis.tracing.free_form.plainer import plainer
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bent_sensor import SPRINGS, is_the_sensors
 from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
@@ -156,6 +157,8 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
         left = {key: s.residual(key) for key in s.keys}
         where = home(p.eq, left, floors)
         where = _in_the_floor_too(p, where, left, after, {**floors, **p.held_out.floors}) if where else where
+        if where and (found := plainer(p, s, where[0])):
+            where = [found, *where]
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     return where

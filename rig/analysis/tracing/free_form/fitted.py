@@ -1,0 +1,58 @@
+"""A form in the model, fitted with everything else, and what fitted runs make of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Term
+from rig.analysis.tracing.fit.model import Solution, extended, fit
+from rig.analysis.tracing.fit.some import of_some
+from rig.analysis.tracing.free_form.form import FreeForm
+from rig.analysis.tracing.free_form.forms import forms
+from rig.analysis.tracing.free_form.ranges import ranges
+from rig.analysis.tracing.prepared import Prepared
+
+RIDGE: Final = 1e-6  # of a column's square: some are sums of others, and of the baseline's
+SURFACE: Final = 0.9  # of its evidence
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """The model with that form, and its evidence in nats      [hastie2009, Sec. 7.7]"""
+
+    form: FreeForm
+    solution: Solution
+    evidence: float
+
+    @property
+    def worth(self) -> float:
+        """Its evidence; of a surface, which draws whatever a curve does and some of the noise, a tenth less."""
+        return self.evidence * (SURFACE if self.form.surface else 1.0)
+
+
+def of_some_rows(p: Prepared, s: Solution) -> Solution:
+    """The model fitted to no more rows than a search: forms have hundreds of columns, and a day of rows has no room for
+    them."""
+    few, whole = of_some(s.design, p.split.fitted)
+    return s if whole else fit(few)
+
+
+def possible(p: Prepared, coordinate: str, finer: int = 1) -> list[FreeForm]:
+    """Forms along that coordinate that what all fitted runs read can show."""
+    runs = [p.eq.runs[i] for i in p.split.fitted]
+    has = frozenset.intersection(*(run.has for run in runs))
+    return [form for form in forms(coordinate, ranges(runs), finer) if form.wants <= has]
+
+
+def fitted(p: Prepared, s: Solution, form: FreeForm) -> Fitted:
+    """With everything else."""
+    d = extended(s.design, Term(form, ()), p.split.fitted)
+    mine = np.arange(s.design.size, d.size)
+    gram = d.gram.copy()
+    gram[mine, mine] *= 1 + RIDGE
+    made = fit(replace(d, gram=gram))
+    rows = sum(d.y[key].size / d.eq.noise.kappa[key[1]] for key in s.keys)
+    return Fitted(form, made, (made.gain - s.gain) / 2 - mine.size / 2 * float(np.log(rows)))
