@@ -12,6 +12,7 @@ import pytest
 
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.free_form import drawn as drawn_of
 from rig.analysis.tracing.free_form import plainer as plainer_of
 from rig.analysis.tracing.free_form.factors import began, hats, motor_waves, past_torque, turned
 from rig.analysis.tracing.free_form.forms import forms
@@ -34,6 +35,7 @@ FORTH_AND_BACK = replace(
     way=np.sign(np.cos(0.6 * ONE_WAY.t)),
 )
 RUNS = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "load_20nm_2", "speed_60rpm_1", "speed_60rpm_2", "lock_60_1")
+NOBODY: Final = cast("Prepared", None), cast("Solution", None)
 DRAWN = [name for name in SIMPLE if name != "time_periodic"]  # of what comes by the clock each run has its own phase
 
 
@@ -128,6 +130,7 @@ def gauges(c: Columns, began: float) -> Columns:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_what_is_in_one_sensor_is_drawn_there_and_gone_from_every_channel(tmp_path: Path, shared: Path) -> None:
     found = spiked(tmp_path / "gauges", shared / "cases" / "open-1", gauges, RUNS)
     assert (found.verdict.status, found.verdict.coordinate) == (Status.UNKNOWN, "motor_angle")
@@ -136,7 +139,27 @@ def test_what_is_in_one_sensor_is_drawn_there_and_gone_from_every_channel(tmp_pa
     assert all(found.ratios_after[channel] < 1.2 for channel in ("theta_l", "tau_m", "tau_l"))
 
 
-NOBODY: Final = cast("Prepared", None), cast("Solution", None)
+@pytest.mark.parametrize(
+    ("vouched", "drawn"), [({"a", "b"}, ("a", 2)), ({"b"}, ("b", 1)), ({"d"}, None), (set(), None)]
+)
+def test_the_form_that_fitted_runs_want_most_is_drawn_as_fine_as_is_worth_it_if_unseen_runs_vouch_for_it(
+    vouched: set[str], drawn: tuple[str, int] | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    evidence = {("a", 1): 50.0, ("a", 2): 60.0, ("a", 4): 55.0, ("b", 1): 40.0, ("c", 1): 5.0, ("d", 1): 4.0}
+
+    def fitted(p: Prepared, s: Solution, form: SimpleNamespace) -> SimpleNamespace:
+        nats = evidence.get((form.words, form.finer), -1.0)
+        return SimpleNamespace(form=form, evidence=nats, worth=nats)
+
+    def possible(p: Prepared, coordinate: str, finer: int = 1) -> list[SimpleNamespace]:
+        return [SimpleNamespace(words=words, finer=finer) for words in "dbca"]
+
+    def vouched_for(p: Prepared, after: object, one: SimpleNamespace) -> tuple[str, int] | None:
+        return (one.form.words, one.form.finer) if one.form.words in vouched else None
+
+    for name, made in (("fitted", fitted), ("possible", possible), ("_vouched_for", vouched_for)):
+        monkeypatch.setattr(drawn_of, name, made)
+    assert drawn_of.drawn(*NOBODY, {}, "speed") == drawn
 
 
 @pytest.mark.parametrize(("speed", "expected"), [(100.0, "speed"), (75.0, None)])
