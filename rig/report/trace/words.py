@@ -221,7 +221,7 @@ def _curves(trace: Trace, beside: str, where: str) -> str:
 
 def _as_what(curve: Curve) -> str:
     """Where it acts, of a form that was fitted with everything else."""
-    return f" ({curve.acts}; of all that may act there the fitted runs want it most)" if curve.acts else ""
+    return f" ({curve.acts}; of what unseen runs vouch for there the fitted ones want it most)" if curve.acts else ""
 
 
 def _beside_names(trace: Trace) -> str:

@@ -41,7 +41,7 @@ def test_every_curve_is_told_with_its_place_and_what_all_of_them_leave() -> None
     assert added(one).startswith("A curve without a name, in the load angle, order 37 per turn; no physics")
     form = Curve("load_angle", "theta_l", None, None, 1.2, "friction of the load: waves of the output's angle")
     said = added(replace(one, added_curves=(form,)))
-    assert "(friction of the load: waves of the output's angle; of all that may act there the fitted runs" in said
+    assert "(friction of the load: waves of the output's angle; of what unseen runs vouch for there the" in said
     further = Curve("motor_angle", "theta_l", 12.63, None, 1.1), Curve("load", "tau_m", None, None, 1.2)
     said = added(replace(one, added_curves=(*one.added_curves, *further)))
     assert "beside it others in the motor angle, order 12.63 per turn and the torque through the gear" in said

@@ -12,7 +12,7 @@ from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.some import of_some
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.free_form.forms import forms
-from rig.analysis.tracing.free_form.ranges import ranges
+from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.analysis.tracing.prepared import Prepared
 
 RIDGE: Final = 1e-6  # of a column's square: some are sums of others, and of the baseline's
@@ -42,9 +42,9 @@ def of_some_rows(p: Prepared, s: Solution) -> Solution:
 
 def possible(p: Prepared, coordinate: str, finer: int = 1) -> list[FreeForm]:
     """Forms along that coordinate that what all fitted runs read can show."""
-    runs = [p.eq.runs[i] for i in p.split.fitted]
+    runs = tuple(p.eq.runs[i] for i in p.split.fitted)
     has = frozenset.intersection(*(run.has for run in runs))
-    return [form for form in forms(coordinate, ranges(runs), finer) if form.wants <= has]
+    return [form for form in forms(coordinate, Ranges(runs), finer) if form.wants <= has]
 
 
 def fitted(p: Prepared, s: Solution, form: FreeForm) -> Fitted:

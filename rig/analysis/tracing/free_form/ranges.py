@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -17,7 +17,7 @@ EVERY: Final = 7  # rows of which one is looked at: knots want no more
 
 @dataclass(frozen=True)
 class Ranges:
-    """Runs whose rows are cut."""
+    """The fitted runs, whose rows are cut."""
 
     runs: tuple[Recording, ...]
 
@@ -41,8 +41,3 @@ class Ranges:
         """Of all rows that were read, (n,)."""
         x = np.concatenate([of(piece)[::EVERY] for run in self.runs for piece in run.pieces])
         return np.asarray(x[np.isfinite(x)])
-
-
-def ranges(runs: Sequence[Recording]) -> Ranges:
-    """Of the fitted runs."""
-    return Ranges(tuple(runs))

@@ -89,7 +89,7 @@ def _curves(p: Prepared, s: Solution, out: Unnamed, where: Home) -> Unnamed:
 
 
 def _loudest(p: Prepared, e: Mapping[Key, Array]) -> tuple[str, float]:
-    """The channel with most left, and its RMS over floor."""
+    """The channel with most left, and its RMS over floor; 0 where only reversals were measured."""
     channels = {c: [key for key in e if key[1] == c] for c in WHOLE}
     over = {c: p.held_out.ratio(e, mine) for c, mine in channels.items() if mine}
-    return max(over.items(), key=lambda item: item[1])
+    return max(over.items(), key=lambda item: item[1], default=("", 0.0))

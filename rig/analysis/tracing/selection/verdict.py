@@ -157,7 +157,7 @@ def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping
         left = {key: s.residual(key) for key in s.keys}
         where = home(p.eq, left, floors)
         where = _in_the_floor_too(p, where, left, after, {**floors, **p.held_out.floors}) if where else where
-        if where and (found := plainer(p, s, where[0])):
+        if line is None and where and (found := plainer(p, s, where[0])):
             where = [found, *where]
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
