@@ -230,6 +230,7 @@ def test_a_folder_that_is_no_campaign_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_note_of_the_campaign_stands_in_every_run_and_check_also_of_a_later_session(tmp_path: Path) -> None:
     planned = campaign(*SMALL)
     journal = new_journal(tmp_path, planned, "virtual", [])

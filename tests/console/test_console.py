@@ -15,6 +15,7 @@ from rig.console.columns import COLUMNS, HEADER, MAGIC
 from rig.runfile.events import read_events
 from rig.runfile.manifest import read
 from tests.console.hand import FOREVER, SHORT, Hand
+from tests.some import some
 
 pytestmark = pytest.mark.slow
 
@@ -78,7 +79,7 @@ def test_the_id_of_another_act_is_refused(ready: Hand) -> None:
     assert before <= said.json()["revision"] <= ready.state()["revision"]  # another moment: a state may come between
 
 
-@pytest.mark.parametrize("id", [None, "of the start", "42", 42, "", ["x"], "halted before"])
+@pytest.mark.parametrize("id", some([None, "of the start", "42", 42, "", ["x"], "halted before"], 3))
 @pytest.mark.parametrize("act", ["stop", "halt"])
 def test_stop_and_halt_are_done_whatever_the_id(ready: Hand, act: str, id: Any) -> None:
     start = str(uuid.uuid4())
@@ -355,6 +356,7 @@ procedure = "lock-check"
 """
 
 
+@pytest.mark.long
 def test_a_campaign_is_stopped_at_a_prompt_and_gone_on_with(hand: Hand, tmp_path: Path) -> None:
     plan = tmp_path / "short.toml"
     plan.write_text(PLAN, encoding="utf-8")

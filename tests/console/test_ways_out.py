@@ -77,6 +77,7 @@ def test_a_killed_server_is_a_lost_page_and_the_run_is_stopped_and_closed(served
     assert "because no page had been seen for 3 s, as [console] page_lost says" in about["exit_reason"]
 
 
+@pytest.mark.long
 def test_a_killed_server_leaves_a_run_to_go_on_where_the_bench_says_so(served: Served) -> None:
     folder, station = served.running("continue"), served.station
     served.process.kill()
@@ -91,6 +92,7 @@ def test_a_killed_server_leaves_a_run_to_go_on_where_the_bench_says_so(served: S
     assert read(folder)["status"] == "stopped"
 
 
+@pytest.mark.long
 def test_a_page_that_is_closed_stops_the_run_while_the_server_lives(served: Served) -> None:
     folder = served.running("stop")
     served.leave()
@@ -112,6 +114,7 @@ def test_ctrl_c_brings_the_motor_to_rest_and_closes_the_run_before_the_server_en
     assert (about["status"], "brought to rest" in about["exit_reason"]) == ("stopped", True)
 
 
+@pytest.mark.long
 def test_ctrl_c_twice_takes_the_torque_off_at_once(served: Served) -> None:
     folder = served.running()
     served.process.send_signal(signal.SIGINT)

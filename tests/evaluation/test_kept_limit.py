@@ -43,6 +43,7 @@ def test_a_run_is_judged_again_by_the_limit_it_was_judged_by_until_told_otherwis
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_limit_of_the_manifest_is_its_own_and_can_be_lifted(tmp_path: Path) -> None:
     folder = made_run(tmp_path / "run", {"limits": {NAME: {"upper": 60.0}}})
     for _ in range(2):
@@ -53,6 +54,7 @@ def test_a_limit_of_the_manifest_is_its_own_and_can_be_lifted(tmp_path: Path) ->
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_what_a_result_holds_for_limits_may_be_anything(tmp_path: Path) -> None:
     folder = made_run(tmp_path / "run")
     odd: list[Any] = [7, [], {NAME: []}, {NAME: {"upper": [1]}}, {NAME: float("nan")}]

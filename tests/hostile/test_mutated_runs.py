@@ -19,6 +19,7 @@ from rig.cli import main
 from rig.core.errors import Exit, HdrigError
 from rig.runfile.run import Run
 from tests.commands.made_run import made_run, rows
+from tests.some import some
 
 VALUES: dict[str, Any] = {
     "null": None, "text": "abc", "negative": -1.5, "zero": 0, "nan": float("nan"), "inf": float("inf"),
@@ -131,6 +132,7 @@ def test_every_key_of_a_manifest_may_hold_anything(good: Path, capsys: pytest.Ca
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_an_analysis_of_any_such_manifest_ends_in_figures_or_a_sentence(good: Path) -> None:
     manifest = good / "manifest.json"
     whole = json.loads(manifest.read_text())
@@ -144,7 +146,7 @@ def test_an_analysis_of_any_such_manifest_ends_in_figures_or_a_sentence(good: Pa
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", COLUMNS)
+@pytest.mark.parametrize("name", some(COLUMNS, 3))
 def test_every_column_may_hold_anything(name: str, tmp_path: Path) -> None:
     for how, made in SPOILT.items():
         assert judged(made_run(tmp_path / f"{name} {how}", table=made(name))), how

@@ -56,6 +56,7 @@ def test_a_run_whose_output_goes_to_a_full_disk_still_completes(stream: str, tmp
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_run_whose_stderr_is_closed_runs_and_its_number_is_no_files(tmp_path: Path) -> None:
     command = '"$0" -m rig.cli run standstill --with duration=1 --out "$1" 2>&-'
     done = subprocess.run(["sh", "-c", command, sys.executable, str(tmp_path)], timeout=120, stdout=subprocess.PIPE)

@@ -23,6 +23,7 @@ from rig.runfile.recover import recover
 from rig.runfile.verify import verify
 from tests.recorder.producer import RATE
 from tests.runfile.rows import assert_prefix, manifest_of
+from tests.some import some
 
 REPOSITORY = Path(__file__).parents[2]
 AT_ONCE = 6  # programs; each has a recorder
@@ -134,7 +135,7 @@ def test_a_kill_loses_no_row_that_was_handed_over(way: Callable[[Program], float
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kills", KILLS)
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", some(WAYS, 2))
 def test_kills_at_random_moments_lose_no_row_that_was_handed_over(
     way: Callable[[Program], float], kills: int, tmp_path: Path
 ) -> None:

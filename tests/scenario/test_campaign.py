@@ -68,8 +68,8 @@ def errors(folder: Path) -> list[Any]:
     return [finding for run in list_runs(folder) for finding in verify(run.path) if finding.level == "error"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("point", "made"), [pytest.param(second_run, 1, marks=pytest.mark.long), (hanging, 2)])
+@pytest.mark.long
+@pytest.mark.parametrize(("point", "made"), [(second_run, 1), (hanging, 2)])
 def test_kill_9_at_any_moment_leaves_a_campaign_that_goes_on(
     point: Callable[[Book], bool], made: int, tmp_path: Path
 ) -> None:

@@ -11,6 +11,7 @@ import pytest
 from sim.parameters import TwinParameters
 from sim.plant import Plant
 from tests.sim.reference import forces, sliding
+from tests.some import some
 
 Array = npt.NDArray[np.float64]
 TICK = 1e-3  # s
@@ -46,7 +47,7 @@ def independent(parameters: TwinParameters, rpm: float, n: int) -> Array:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rpm", [9.6, 120.0, 300.0, 500.0])
+@pytest.mark.parametrize("rpm", some([9.6, 120.0, 300.0, 500.0], 2))
 def test_smooth_turning_is_exact_far_below_a_count_and_converges(calm: TwinParameters, rpm: float) -> None:
     expected = independent(calm, rpm, 400)
     errors = []

@@ -53,6 +53,7 @@ def declared(campaign: Path, to: Path, change: Callable[[float], float]) -> Path
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_disc_that_is_declared_is_no_effect_and_the_inertia_told_is_without_it(campaign: Path) -> None:
     found, read = trace(campaign), read_campaign(campaign)
     assert {run.name for run in read.runs if run.added} == {r.name for r in read.runs if r.speed_rpm in (300, 500)}

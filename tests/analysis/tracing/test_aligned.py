@@ -48,6 +48,7 @@ def test_a_missing_row_spoils_its_neighbours_alone() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_delay_of_a_low_pass_is_found_told_and_no_effect(tmp_path: Path, shared: Path) -> None:
     found = trace(change(tmp_path / "filtered", shared / "cases" / "open-1", filtered, RUNS))
     lag = next(p for p in found.baseline if p.name == "lag")

@@ -116,6 +116,7 @@ SWING = 0.44  # rad: 25 degrees either way, a seventh of a turn in all
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_joint_that_swings_by_25_degrees_tells_its_weight_spring_and_friction(tmp_path: Path) -> None:
     found = joint(tmp_path, stribeck=0.06, swing=SWING)
     assert found.verdict.status is Status.EXPLAINED

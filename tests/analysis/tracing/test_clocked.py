@@ -60,6 +60,7 @@ def test_speeds_that_do_not_agree_on_a_rate_clock_nothing(tmp_path: Path, shared
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_drag_is_named_without_a_time_column_where_speeds_are_declared(tmp_path: Path, shared: Path) -> None:
     found = trace(untimed(tmp_path, shared, drag=0.004))
     assert found.verdict.effects == ("quadratic_drag",)

@@ -88,7 +88,9 @@ LOADS = ("load_10nm_1", "load_40nm_1", "speed_60rpm_1", "speed_200rpm_1", "speed
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("drop", [("theta_l", "tau_l"), ("theta_m",), ("theta_m", "tau_l")])
+@pytest.mark.parametrize(
+    "drop", [("theta_l", "tau_l"), ("theta_m",), pytest.param(("theta_m", "tau_l"), marks=pytest.mark.long)]
+)
 def test_of_a_side_that_nobody_read_orders_are_told_by_slow_runs_under_load(
     tmp_path: Path, open_1: Path, drop: tuple[str, ...]
 ) -> None:

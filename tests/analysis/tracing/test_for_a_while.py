@@ -52,6 +52,7 @@ def test_nothing_else_is_such_a_while(left: np.ndarray) -> None:
     assert level_for_a_while(replace(RUNS, left=left + scattered(1))) is None
 
 
+@pytest.mark.long
 def test_chance_is_none_once_in_two_hundred_campaigns_whatever_it_scatters_by() -> None:
     assert not [seed for seed in range(200) if level_for_a_while(replace(RUNS, left=10.0 * scattered(seed)))]
 

@@ -76,6 +76,7 @@ def test_friction_that_falls_with_speed_is_named_with_its_numbers(tmp_path: Path
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_grease_that_thins_is_told_by_the_speed_and_not_named(tmp_path: Path) -> None:
     found = measured(tmp_path, thinning)
     assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())

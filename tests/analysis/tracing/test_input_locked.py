@@ -68,7 +68,7 @@ def by_angle(torque: np.ndarray, angle: float) -> np.ndarray:
     ("twist", "status", "named"),
     [
         (plain, Status.NOTHING, ()),
-        (soft, Status.EXPLAINED, ("nonlinear_stiffness",)),
+        pytest.param(soft, Status.EXPLAINED, ("nonlinear_stiffness",), marks=pytest.mark.long),
         (by_angle, Status.EXPLAINED, ("angle_dependent_stiffness",)),
     ],
 )

@@ -272,6 +272,7 @@ def test_a_torque_sensor_whose_own_bearing_drags_winds_nothing_up(shared: Path, 
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_sensor_that_feels_bending_by_as_much_as_it_carries_has_crosstalk(shared: Path, tmp_path: Path) -> None:
     def bends(c: Columns, began: float) -> Columns:
         return {"tau_l": c["tau_l"] * (1 + 0.012 * np.cos(c["theta_l"] + 0.7))}
@@ -331,6 +332,7 @@ def test_gauges_that_feel_the_wave_generator_are_told_with_how_much(shared: Path
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_torque_constant_that_changes_through_the_campaign_is_told_with_how_much(
     shared: Path, tmp_path: Path
 ) -> None:

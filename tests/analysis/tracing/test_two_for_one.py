@@ -41,7 +41,7 @@ def drag(c: Columns) -> np.ndarray:
     ("both", "found", "names"),
     [
         (True, BENT, ["quadratic_drag", "stribeck_friction"]),
-        (False, PLAIN, ["stribeck_friction"]),
+        pytest.param(False, PLAIN, ["stribeck_friction"], marks=pytest.mark.long),
         (False, BENT, ["stribeck_friction"]),
     ],
 )

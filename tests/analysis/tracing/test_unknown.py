@@ -18,6 +18,7 @@ from rig.analysis.tracing.rest.unknown import homes
 from rig.analysis.tracing.rest.whose_order import of_the_output
 from rig.analysis.tracing.rest.worn import worn_off
 from rig.model.memory import play
+from tests.some import some
 
 DT = 1 / 125
 ROWS = 6000
@@ -113,7 +114,7 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("what", MADE)
+@pytest.mark.parametrize("what", some(MADE, 10))
 def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
     rng = np.random.default_rng(5)
     at = coordinates(rng)

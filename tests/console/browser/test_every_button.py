@@ -14,6 +14,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("browser")]
 SHOWN = "button => button.checkVisibility() && !button.closest('[inert]')"
 
 
+@pytest.mark.long
 def test_every_button_does_what_the_table_says_or_says_why_not(page: Page, station: Puppet) -> None:
     """On one page, from one situation to the next: that of before leaves no button as it was."""
     for name, (told, expected) in SITUATIONS.items():

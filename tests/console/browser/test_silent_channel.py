@@ -13,6 +13,7 @@ DASH, NUMBER = "^—$", "^[−0-9]"
 LOADED = 150e3  # ms for what takes a tenth of a second on an idle machine, and a compilation on a new one
 
 
+@pytest.mark.long
 def test_a_silent_device_is_a_dash_on_the_page_and_the_others_live(browser: Browser) -> None:
     with rig() as made, browser.new_context(viewport=SIZE) as context:
         page = context.new_page()
