@@ -123,6 +123,7 @@ def test_ctrl_c_twice_takes_the_torque_off_at_once(served: Served) -> None:
     assert read(folder)["status"] == "stopped"
 
 
+@pytest.mark.long
 def test_ctrl_backslash_takes_the_torque_off_at_once_and_closes_the_run(served: Served) -> None:
     folder = served.running()
     served.process.send_signal(signal.SIGQUIT)

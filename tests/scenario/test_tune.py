@@ -15,6 +15,7 @@ STICKY = ["--set", "twin.omega_s=1.5"]  # 9.6 rpm = 1 rad/s then lies on the ste
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_default_gains_hunt_at_a_stribeck_speed_of_1_5_and_the_run_is_rejected_with_advice(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -65,6 +65,7 @@ def test_a_disc_that_is_declared_is_no_effect_and_the_inertia_told_is_without_it
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_disc_that_the_shaft_torque_knows_nothing_of_is_none(campaign: Path, tmp_path: Path) -> None:
     numbers = sorted({run.declared["J_l"] for run in read_campaign(campaign).runs})
     other = declared(campaign, tmp_path / "other", lambda J: numbers[0] if numbers[1] == J else numbers[1])

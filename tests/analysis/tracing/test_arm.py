@@ -93,6 +93,7 @@ def size(found: Trace, name: str) -> float:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_an_arms_weight_is_named_and_tells_spring_and_inertia(tmp_path: Path) -> None:
     found = joint(tmp_path)
     assert (found.verdict.status, found.verdict.effects) == (Status.EXPLAINED, ("gravity_unbalance",))

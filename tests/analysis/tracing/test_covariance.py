@@ -39,6 +39,7 @@ def coverage(gain: float, spread: Callable[[Solution], np.ndarray], telling: int
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_intervals_cover_where_runs_differ_by_their_gain() -> None:
     assert 0.90 < coverage(0.2, covariance) < 0.99
     assert coverage(0.2, lambda s: inverse(s.gram)) < 0.60  # what rows of independent noise would give

@@ -67,6 +67,7 @@ def numbers(found: Trace) -> dict[str, float]:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_friction_that_falls_with_speed_is_named_with_its_numbers(tmp_path: Path) -> None:
     found = measured(tmp_path, falling)
     assert (found.verdict.status, found.verdict.effects) == (Status.EXPLAINED, ("stribeck_friction",))

@@ -38,6 +38,7 @@ def test_what_the_motor_torque_of_a_lock_test_leaves_along_the_shaft_torque_is_i
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_motor_whose_torque_constant_is_off_in_lock_tests_leaves_the_kinematic_error_as_it_is(shared: Path) -> None:
     campaign = read_campaign(shared / "cases" / "open-1")
 

@@ -117,6 +117,7 @@ def behind_the_encoder(s: Signals, behind: Array) -> tuple[Array, Array]:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_coupling_swings_as_its_own_equation_of_motion_says() -> None:
     """J_2·(ω̇_m − ψ̈) = k·ψ + b·ψ̇ − T·(1/N − θ̃_p′(θ_m − ψ)) − f, integrated apart; the load shows how it turns."""
     s, p, omega, zeta, inertia, rubs = motion(), KNOWN.kinematic_error, 2 * np.pi * 9.0, 0.06, 5e-4, 0.04

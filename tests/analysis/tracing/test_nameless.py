@@ -174,8 +174,8 @@ def dent(c: Columns, began: float) -> Columns:
 DIFFER = {two_gains: 2.0, two_constants: 8.0}  # %, between one way and the other
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("law", [two_gains, pytest.param(two_constants, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("law", [two_gains, two_constants])
 def test_readings_of_two_gains_are_told_and_not_named(
     shared: Path, tmp_path: Path, law: Callable[[Columns, float], Columns]
 ) -> None:
