@@ -50,6 +50,7 @@ SMALLEST: Final = 0.35  # of the floor, RMS where it matters most: smaller ones 
 PLAIN_TO_SEE: Final = 0.7  # the same where the baseline alone is at the floor: half of a floor's variance
 VOUCHED_FOR: Final = 0.4  # the same where repeats tell how much of it chance makes: of 17 false ones one had 0.2
 SEEN: Final = 1.2  # the same of a fitted run that it makes half as loud again, unseen ones following in what they have
+LITTLE: Final = 1.4  # floors, of which a coordinate must foretell a part to be more than friction that scatters
 QUIET: Final = 1.1  # RMS over floor: a floor from a dozen repeats is not known better
 REAL: Final = 0.6  # of its own sum of squares an effect must take away on unseen runs; 1 when it is what it says
 UNREAL: Final = 1.4  # the same from above: unseen runs want it a fifth larger than the seen ones did, so it is not that
@@ -87,6 +88,9 @@ HARMFUL: Final = 1.1  # RMS of a loud channel over that without the effect: what
 # of the best coordinate's share: a simpler one that does nearly as well is said instead: times and memories have many
 # bins, and predict a part of whatever differs from run to run
 PLAIN_ENOUGH: Final = 0.8
+# of the evidence for another coordinate, and what speaks for the one that is said is less. Of the unknown cases of
+# exams 88 to 91 true ones have three quarters and more of the best, of the wrong ones one has half
+FAR_LESS: Final = 0.6
 AS_WELL: Final = 1.02  # of what is left: a name without which no more is left is needed no more
 AT_THE_FLOOR: Final = 1.0  # of what is left: there is no excess to remove
 FREED: Final = 1.05  # times: what a law has to leave less of unseen runs for whose sake every run has a zero of its own

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.free_form import along_another as another
 from rig.analysis.tracing.free_form import drawn as drawn_of
-from rig.analysis.tracing.free_form import plainer as plainer_of
 from rig.analysis.tracing.free_form.factors import began, hats, motor_waves, past_torque, turned
 from rig.analysis.tracing.free_form.forms import forms
-from rig.analysis.tracing.free_form.plainer import plainer
 from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import SIMPLE, Home
@@ -37,6 +36,14 @@ FORTH_AND_BACK = replace(
 RUNS = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "load_20nm_2", "speed_60rpm_1", "speed_60rpm_2", "lock_60_1")
 NOBODY: Final = cast("Prepared", None), cast("Solution", None)
 DRAWN = [name for name in SIMPLE if name != "time_periodic"]  # of what comes by the clock each run has its own phase
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Stands for a form."""
+
+    words: str
+    surface: bool = False
 
 
 class Seen(Ranges):
@@ -157,28 +164,67 @@ def test_the_form_that_fitted_runs_want_most_is_drawn_as_fine_as_is_worth_it_if_
     def vouched_for(p: Prepared, after: object, one: SimpleNamespace) -> tuple[str, int] | None:
         return (one.form.words, one.form.finer) if one.form.words in vouched else None
 
-    for name, made in (("fitted", fitted), ("possible", possible), ("_vouched_for", vouched_for)):
+    def likeliest(p: Prepared, s: Solution, made: list[SimpleNamespace], count: int) -> list[SimpleNamespace]:
+        return made
+
+    ours = {"fitted": fitted, "possible": possible, "likeliest": likeliest, "_vouched_for": vouched_for}
+    for name, made in ours.items():
         monkeypatch.setattr(drawn_of, name, made)
     assert drawn_of.drawn(*NOBODY, {}, "speed") == drawn
 
 
-@pytest.mark.parametrize(("speed", "expected"), [(100.0, "speed"), (75.0, None)])
-def test_time_is_said_only_where_no_plain_form_has_far_more_evidence(
-    speed: float, expected: str | None, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("said", "evidence", "expected"),
+    [
+        ("time", {"time": 70.0, "speed": 100.0, "load": 20.0}, "speed"),  # a plain one is said sooner than time
+        ("time", {"time": 70.0, "speed": 75.0, "load": 20.0}, None),
+        ("time", {"time": 70.0, "memory": 100.0}, None),  # one of many numbers for another has to be far better
+        ("time", {"time": 50.0, "memory": 100.0}, "memory"),
+        ("speed", {"speed": 70.0, "load": 100.0}, None),
+        ("speed", {"speed": 50.0, "load": 100.0}, "load"),
+        ("speed", {"load": 100.0}, "load"),
+        ("speed", {"speed": 50.0, "load": 90.0, "memory": 100.0}, "load"),
+        ("speed", {"speed": 3.0, "load": 10.0}, None),  # nothing speaks for any
+    ],
+)
+def test_another_coordinate_is_said_where_far_more_speaks_for_it(
+    said: str, evidence: dict[str, float], expected: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    evidence = {"time": 70.0, "speed": speed, "load": 20.0}
-    monkeypatch.setattr(plainer_of, "of_some_rows", lambda p, s: s)
-    monkeypatch.setattr(
-        plainer_of, "possible", lambda p, name: [SimpleNamespace(surface=False, words=name)] if name in evidence else []
-    )
-    monkeypatch.setattr(plainer_of, "fitted", lambda p, s, form: SimpleNamespace(evidence=evidence[form.words]))
-    monkeypatch.setattr(plainer_of, "_share", lambda p, s, one, channel: 0.8)
-    found = plainer(*NOBODY, Home("time", "M", 0.9))
+    monkeypatch.setattr(another, "of_some_rows", lambda p, s: s)
+    monkeypatch.setattr(another, "_best_along_each", lambda p, s: {n: (n, e) for n, e in evidence.items()})
+    monkeypatch.setattr(another, "fitted", lambda p, s, form: None)
+    monkeypatch.setattr(another, "_share", lambda p, s, one, channel: 0.8)
+    found = another.along_another(*NOBODY, Home(said, "M", 0.9))
     assert (found.coordinate if found else None) == expected
     if found:
         assert (found.channel, found.share) == ("M", 0.8)
 
 
-@pytest.mark.parametrize("home", [Home("speed", "M", 0.9), Home("time", "M", 0.9, first=True)])
-def test_what_is_plain_already_or_began_at_one_moment_is_not_asked_again(home: Home) -> None:
-    assert plainer(*NOBODY, home) is None
+@pytest.mark.parametrize("home", [Home("time_periodic", "M", 0.9), Home("time", "M", 0.9, first=True)])
+def test_what_comes_by_the_clock_or_began_at_one_moment_is_asked_along_nothing_else(home: Home) -> None:
+    assert another.along_another(*NOBODY, home) is None
+
+
+def test_of_each_coordinate_the_few_curves_that_few_rows_want_most_are_fitted_to_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    curves = {"speed": ("a", "b", "d", "e"), "load": ("c",), "memory": ()}
+    few = {"a": 5.0, "b": 7.0, "c": 6.0, "d": 4.0, "e": 9.0}
+    all_rows = {"a": 75.0, "b": 80.0, "c": 70.0, "d": 90.0, "e": 60.0}
+
+    def possible(p: Prepared, name: str) -> list[Any]:
+        surface = SimpleNamespace(words="surface", surface=True)
+        return [surface, *(Curve(words) for words in curves.get(name, ()))]
+
+    def likeliest(p: Prepared, s: Solution, made: list[Any], count: int) -> list[Any]:
+        assert count == len(made) == 5
+        return sorted(made, key=lambda form: -few[form.words])
+
+    monkeypatch.setattr(another, "possible", possible)
+    monkeypatch.setattr(another, "likeliest", likeliest)
+    monkeypatch.setattr(another, "fitted", lambda p, s, form: SimpleNamespace(evidence=all_rows[form.words]))
+    found = another._best_along_each(*NOBODY)
+    assert {name: (form.words, nats) for name, (form, nats) in found.items()} == {
+        "speed": ("b", 80.0),
+        "load": ("c", 70.0),
+    }

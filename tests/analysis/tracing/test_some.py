@@ -14,7 +14,7 @@ from rig.analysis.tracing.fit.bank import fill, reach
 from rig.analysis.tracing.fit.channels import Rows
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.fit.model import design, fit
-from rig.analysis.tracing.fit.some import Stretches, laid_out, search_some, some
+from rig.analysis.tracing.fit.some import Bounds, Stretches, laid_out, search_some, some
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.smoothing import Smoother
@@ -64,7 +64,7 @@ def test_a_channel_of_few_rows_of_which_none_is_left_is_left_out(monkeypatch: py
     first, last = np.zeros((2, 100), dtype=bool)
     first[:50], last[88:] = True, True
     left = Stretches(first, (np.arange(50),), np.ones(50, dtype=bool))
-    monkeypatch.setattr(module, "stretches", lambda eq, i, share: left)
+    monkeypatch.setattr(module, "stretches", lambda eq, i, share, fewest: left)
     monkeypatch.setattr(Stretches, "recording", lambda self, run: run)
     run: Any = SimpleNamespace(pieces=(SimpleNamespace(t=np.zeros(100)),))
 
@@ -85,8 +85,7 @@ def test_what_some_rows_brought_is_fitted_to_all_of_them(
     tmp_path: Path, shared: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`searched.beside` does not fit it once more."""
-    monkeypatch.setattr("rig.analysis.tracing.fit.some.MOST", 5000)
-    monkeypatch.setattr("rig.analysis.tracing.fit.some.LEFT", 4000)
+    monkeypatch.setattr("rig.analysis.tracing.fit.some.SEARCHED", Bounds(5000, 4000, 2000))
     p = prepare(read_campaign(reduced(tmp_path, shared / "cases" / "open-5", RUNS, ())), ())
     runs = p.split.fitted
     covered = reach([p.eq.runs[i] for i in runs])
@@ -100,3 +99,15 @@ def test_what_some_rows_brought_is_fitted_to_all_of_them(
     d = found.solution.design
     np.testing.assert_array_equal(found.solution.x, fit(design(d.eq, d.terms, runs)).x)
     assert sum(y.size for y in d.y.values()) == sum(p.eq.rows[key].y.size for key in p.eq.of(runs))
+
+
+def test_ranked_by_few_rows_a_run_in_short_pieces_gives_less_as_well(shared: Path, tmp_path: Path) -> None:
+    """Where nothing was repeated runs are cut, some a second at a time."""
+    campaign = reduced(tmp_path, shared / "cases" / "open-5", ("slow_ke_1", "speed_60rpm_1"), ())
+    p = prepare(read_campaign(campaign), ())
+    cut = [i for i in p.split.fitted if len(p.eq.runs[i].pieces) > 1]
+    assert cut
+    whole, few = (some(p.eq, p.split.fitted, Bounds(10, left, 100)) for left in (10**9, 1000))
+    for key in p.eq.of(cut):
+        if key[1] in "AML":
+            assert few.rows[key].y.size < 0.6 * whole.rows[key].y.size

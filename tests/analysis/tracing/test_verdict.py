@@ -10,14 +10,12 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.selection import verdict
 from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.falls import share, share_of_all
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.standing import standing
 from rig.analysis.tracing.selection.verdict import _along_the_same_turn as along_the_same_turn
-from rig.analysis.tracing.selection.verdict import _in_the_floor_too as in_the_floor_too
 from rig.analysis.tracing.selection.verdict import _of_the_same_order as of_the_same_order
 from rig.analysis.tracing.selection.verdict import is_next_to_nothing
 from rig.analysis.tracing.thresholds import PART
@@ -137,14 +135,3 @@ def test_the_sentence_says_that_there_is_a_law_beside_the_names() -> None:
 @pytest.mark.parametrize(("total", "share", "nothing"), [(1.33, 0.27, True), (1.33, 0.5, False), (1.6, 0.1, False)])
 def test_a_little_that_no_coordinate_foretells_is_no_effect(total: float, share: float, nothing: bool) -> None:
     assert is_next_to_nothing(Home("memory", "M", share), total) == nothing
-
-
-@pytest.mark.parametrize(("share", "first", "waves"), [(1.0, True, False), (1.0, False, True), (0.5, True, True)])
-def test_what_settles_in_every_run_is_no_wave_that_comes_back_with_the_runs(
-    monkeypatch: pytest.MonkeyPatch, share: float, first: bool, waves: bool
-) -> None:
-    wave = Home("time_periodic", "A", 0.6, frequency_hz=0.03)
-    monkeypatch.setattr(verdict, "in_the_floor", lambda *asked: wave)
-    settles = Home("time", "A", share, first=first)
-    p: Any = SimpleNamespace(eq=None)
-    assert in_the_floor_too(p, [settles], {}, {}, {}) == ([wave, settles] if waves else [settles])

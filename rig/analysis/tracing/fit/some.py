@@ -24,13 +24,23 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Reach
 
-MOST: Final = 77_000  # rows of the fitted runs in a channel that are all searched: half an hour of campaign
-LEFT: Final = 40_000  # of more than those: what is found is then fitted to all rows again, and may as well be few
 PERIOD: Final = 12.0  # s from one stretch to the next: a slow motor turns twice
-FEWEST: Final = 2000  # rows of a run in all its channels: of fewer none are left out
 WORTH: Final = 0.9  # of a run's rows: a shortened one is a copy
 
 Chosen = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """So many rows of the fitted runs in a channel are `most` that are all taken, and about `left` of more than those;
+    of a run that has fewer than `fewest` in all its channels none are left out."""
+
+    most: int
+    left: int
+    fewest: int
+
+
+SEARCHED: Final = Bounds(77_000, 40_000, 2000)  # half an hour of campaign; what is found is fitted to all rows again
 
 
 @dataclass(frozen=True)
@@ -62,13 +72,14 @@ class Stretches:
         return replace(rows, y=rows.y[left], z=rows.z[left], keep=keep, theta_m=rows.theta_m[left], own=rows.own[left])
 
 
-def some(eq: Equations, runs: Sequence[int]) -> Equations:
-    """Equations with all rows of `runs` where no channel has more than MOST, else with about LEFT in the fullest. And
-    with no rows of the pieces that no equation is made from: a locked run is read stay by stay."""
+def some(eq: Equations, runs: Sequence[int], bounds: Bounds | None = None) -> Equations:
+    """Equations with as many rows of `runs` in the fullest channel as the `bounds` say, those of a search unless others
+    are given. And with no rows of the pieces that no equation is made from: a locked run is read stay by stay."""
+    bounds = bounds or SEARCHED
     count = {c: sum(eq.rows[i, c].y.size for i in runs if (i, c) in eq.rows) for c in CHANNELS}
     most = max(*count.values(), 1)
-    share = 1.0 if most <= MOST else LEFT / most
-    left = {i: stretches(eq, i, share) for i in runs if eq.kept(i)}
+    share = 1.0 if most <= bounds.most else bounds.left / most
+    left = {i: stretches(eq, i, share, bounds.fewest) for i in runs if eq.kept(i)}
     left = {i: s for i, s in left.items() if s.shorter(eq.runs[i])}
     cut = {key: left[key[0]].rows(r) if key[0] in left else r for key, r in eq.rows.items()}
     rows = {key: r for key, r in cut.items() if r.y.size}  # a lock test may have a dozen in M, and none of them here
@@ -107,9 +118,9 @@ def ranking_of_some(d: Design, bank: Bank, runs: Sequence[int], covered: Reach, 
     return ranking_beside(few, bank, runs, tuple(few.y), covered, nearly)
 
 
-def of_some(d: Design, runs: Sequence[int]) -> tuple[Design, bool]:
+def of_some(d: Design, runs: Sequence[int], bounds: Bounds | None = None) -> tuple[Design, bool]:
     """A design with `some` of its rows, and whether they are all."""
-    eq = some(d.eq, runs)
+    eq = some(d.eq, runs, bounds)
     whole = all(eq.rows[key].y.size == y.size for key, y in d.y.items())
     return (replace(d, eq=eq) if whole else design(eq, d.terms, runs)), whole
 
@@ -121,18 +132,18 @@ def _of_all(s: Solution, eq: Equations, runs: Sequence[int]) -> tuple[Solution, 
     return replace(s, design=replace(s.design, eq=whole)), whole.rows is eq.rows
 
 
-def stretches(eq: Equations, run: int, share: float) -> Stretches:
-    """Of each period the first `share`, and all reversals: they are few, and friction shows its memory there alone. Of
-    a run with few rows all."""
+def stretches(eq: Equations, run: int, share: float, fewest: int) -> Stretches:
+    """Of each period of the run the first `share`, and all reversals: they are few, and friction shows its memory there
+    alone. Of a run with few rows all."""
     recording, kept = eq.runs[run], eq.kept(run)
     f, sizes = recording.smoother, [recording.smoother.rows(p.t.size) for p in recording.pieces]
     period = PERIOD / (f.dt * f.step)
-    few = sum(r.y.size for r in kept.values()) < FEWEST
+    few = sum(r.y.size for r in kept.values()) < fewest
     used = np.any([r.keep for r in kept.values()], axis=0)
     turning = kept["R"].keep if "R" in kept else np.zeros_like(used)
     made = []
     for piece, at in zip(recording.pieces, np.split(np.arange(used.size), np.cumsum(sizes)[:-1]), strict=True):
-        asked = used[at] & (few | turning[at] | ((at - at[:1]) % period < share * period))
+        asked = used[at] & (few | turning[at] | (at % period < share * period))
         made.append(laid_out(f, asked, piece.t.size))
     of_pieces, wanted, local = zip(*made, strict=True)
     return Stretches(np.concatenate(wanted), of_pieces, np.concatenate(local))

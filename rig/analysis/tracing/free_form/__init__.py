@@ -10,6 +10,6 @@ along.py    what a form may run along
 form.py     one form at one port
 forms.py    all that may act along a coordinate
 fitted.py   a form in the model, and how much fitted runs want it
-plainer.py  whether what seems to live in time or memory is a form along a plainer coordinate
 drawn.py    the one that fitted runs want most, and what unseen runs say of it
+along_another.py   whether what seems to live along one coordinate is far rather a form along another
 """

@@ -16,6 +16,7 @@ from rig.analysis.tracing.free_form.factors import (
     past_torque,
     times,
     turned,
+    turned_each_way,
 )
 from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.model.effect import Array, Signals
@@ -70,6 +71,7 @@ def along(coordinate: str, seen: Ranges, finer: int) -> Iterator[Along]:
             back = "what wears off on the way since it turned back"
             yield Along(lambda s: turned(s, finer, False), back, True)
             yield Along(lambda s: turned(s, finer, True), f"{back} or began", True)
+            yield Along(lambda s: turned_each_way(s, finer), f"{back}, another each way", True)
             yield Along(past_torque, "what the torque has been", True)
         case "direction":
             yield Along(lambda s: s.way[:, None], "the direction")

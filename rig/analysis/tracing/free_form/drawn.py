@@ -10,13 +10,14 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.held_out import HeldOut, unseen
-from rig.analysis.tracing.free_form.fitted import Fitted, fitted, possible
+from rig.analysis.tracing.free_form.fitted import Fitted, fitted, likeliest, possible
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.thresholds import EVIDENCE
 from rig.analysis.tracing.workers import each
 from rig.model.effect import Array
 
 FINER: Final = (2, 4)  # times as fine as the coarsest, while fitted runs want it
+LIKELY: Final = 8  # forms that few rows speak for most
 TRIED: Final = 3  # forms with most evidence that unseen runs are asked about
 WORTH: Final = 0.95  # of what unseen runs leave, RMS: a form that takes less is none to tell of
 SPOILS: Final = 1.05  # times: what a channel of unseen runs may have more with it
@@ -33,7 +34,7 @@ class Drawn:
 
 def drawn(p: Prepared, s: Solution, after: Mapping[Key, Array], coordinate: str) -> Drawn | None:
     """With the best form along that coordinate; None where fitted runs want none, or unseen runs vouch for none."""
-    made = possible(p, coordinate)
+    made = likeliest(p, s, possible(p, coordinate), LIKELY)
     worth = each(lambda form: fitted(p, s, form).worth, made)
     for i in sorted(range(len(made)), key=lambda i: -worth[i])[:TRIED]:
         if worth[i] < EVIDENCE:

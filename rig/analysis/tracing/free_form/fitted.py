@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -9,14 +10,16 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, extended, fit
-from rig.analysis.tracing.fit.some import of_some
+from rig.analysis.tracing.fit.some import Bounds, of_some
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.free_form.forms import forms
 from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.workers import each
 
 RIDGE: Final = 1e-6  # of a column's square: some are sums of others, and of the baseline's
 SURFACE: Final = 0.9  # of its evidence
+RANKED: Final = Bounds(15_000, 12_000, 400)  # rows that tell which of some dozen forms may be the best
 
 
 @dataclass(frozen=True)
@@ -33,10 +36,10 @@ class Fitted:
         return self.evidence * (SURFACE if self.form.surface else 1.0)
 
 
-def of_some_rows(p: Prepared, s: Solution) -> Solution:
+def of_some_rows(p: Prepared, s: Solution, bounds: Bounds | None = None) -> Solution:
     """The model fitted to no more rows than a search: forms have hundreds of columns, and a day of rows has no room for
     them."""
-    few, whole = of_some(s.design, p.split.fitted)
+    few, whole = of_some(s.design, p.split.fitted, bounds)
     return s if whole else fit(few)
 
 
@@ -45,6 +48,13 @@ def possible(p: Prepared, coordinate: str, finer: int = 1) -> list[FreeForm]:
     runs = tuple(p.eq.runs[i] for i in p.split.fitted)
     has = frozenset.intersection(*(run.has for run in runs))
     return [form for form in forms(coordinate, Ranges(runs), finer) if form.wants <= has]
+
+
+def likeliest(p: Prepared, s: Solution, made: Sequence[FreeForm], count: int) -> list[FreeForm]:
+    """So many of the forms as few rows speak for most, the best first: of all rows all of them would take minutes."""
+    few = of_some_rows(p, s, RANKED)
+    worth = each(lambda form: fitted(p, few, form).worth, made)
+    return [made[i] for i in sorted(range(len(made)), key=lambda i: -worth[i])[:count]]
 
 
 def fitted(p: Prepared, s: Solution, form: FreeForm) -> Fitted:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import ORDERS
 from rig.analysis.tracing.free_form.along import ALONE, Along, along
-from rig.analysis.tracing.free_form.factors import load_waves, motor_waves, times
+from rig.analysis.tracing.free_form.factors import known, load_waves, motor_waves, times
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.analysis.tracing.nameless.loops import way_of_the_output
@@ -33,7 +33,7 @@ class At(NamedTuple):
 
     def times(self, x: Array, s: Signals) -> dict[Port, Array]:
         """Columns (n, k) there."""
-        return {self.port: x * np.nan_to_num(self.by(s))[:, None]}
+        return {self.port: x * known(self.by(s))[:, None]}
 
 
 def _one(s: Signals) -> Array:

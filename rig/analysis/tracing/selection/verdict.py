@@ -12,17 +12,13 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.fit.search import Found
-from rig.analysis.tracing.free_form.plainer import plainer
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bent_sensor import SPRINGS, is_the_sensors
 from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
 from rig.analysis.tracing.rest.gains_of_locks import gains_of_locks
-from rig.analysis.tracing.rest.hidden_order import hidden_order
-from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
-from rig.analysis.tracing.rest.in_the_floor import in_the_floor
+from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.uneven_drag import uneven_drag
 from rig.analysis.tracing.rest.uneven_friction import uneven_friction
-from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.rest.warm_zeros import warm_zeros
 from rig.analysis.tracing.rest.zeros_by_speed import zeros_by_speed
 from rig.analysis.tracing.rest.zeros_by_way import zeros_by_way
@@ -37,15 +33,14 @@ from rig.analysis.tracing.selection.inseparable import inseparable, whose_spring
 from rig.analysis.tracing.selection.next_run import along, by_table, deciding
 from rig.analysis.tracing.selection.sentences import in_words, lacks, nothing, of_the_rest
 from rig.analysis.tracing.selection.standing import standing
-from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, MOSTLY, PART, QUIET
+from rig.analysis.tracing.selection.where import where_left
+from rig.analysis.tracing.thresholds import AMISS, EXPLAINED, LITTLE, MOSTLY, PART, QUIET
 from rig.model.effect import Array
 
 DRIFTS: Final = 3.0  # floors: zeros that drift by less matter to nobody, and wander so now and then
 SAME_ORDER: Final = 0.05  # of a turn
-HALF: Final = 0.5  # of the excess: a coordinate that foretells less of it may be another one's shadow
 ALONG_THE_OUTPUT: Final = {"A": "output_once_per_rev", "L": "torque_sensor_crosstalk"}  # a few orders of its turn
 AT_THE_START: Final = {"stribeck_friction"}  # more where a motor is slow, and so is what wears off after a start
-LITTLE: Final = 1.4  # floors, of which a coordinate must foretell a part to be more than friction that scatters
 FORETOLD_BY_CHANCE: Final = 0.3  # of the excess
 QUIETER: Final = 0.95  # of what was left before: less than that is no fall to tell of
 
@@ -80,7 +75,7 @@ def _decided(asked: Asked) -> Conclusion:
         return elsewhere or _jumped(p, beside) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
     if not names and asked.worst[1] < LITTLE and (drift := _drifting(p, s, names, asked.floors)):
         return drift  # of many floors, which no error shows: the little that is left is what of it falls within runs
-    where = _where(p, s, asked.after, asked.floors, asked.one)
+    where = where_left(p, s, asked.after, asked.floors, asked.one)
     return _with_a_remainder(asked, where) or _unknown(asked, where)
 
 
@@ -145,40 +140,6 @@ def is_next_to_nothing(best: Home, total: float) -> bool:
     """Whether what is left is little, and little of it is foretold by any coordinate: friction that scatters within
     runs leaves as much where repeats at another speed tell the floor. An effect is foretold by something."""
     return total < LITTLE and best.share < FORETOLD_BY_CHANCE
-
-
-def _where(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float], one: float) -> list[Home]:
-    """Where what is left lives, the best first: a line in a sensor, then by coordinate; at reversals alone where no
-    channel has more left elsewhere than may be in `one` run."""
-    line = p.own.line
-    elsewhere = {key: e for key, e in after.items() if key[1] != "R"}
-    where = [WHERE_IT_TURNS_BACK]
-    if line is not None or p.held_out.loud(elsewhere, one):
-        left = {key: s.residual(key) for key in s.keys}
-        where = home(p.eq, left, floors)
-        where = _in_the_floor_too(p, where, left, after, {**floors, **p.held_out.floors}) if where else where
-        if line is None and where and (found := plainer(p, s, where[0])):
-            where = [found, *where]
-    if line is not None:
-        where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
-    return where
-
-
-def _in_the_floor_too(
-    p: Prepared, where: list[Home], left: Mapping[Key, Array], after: Mapping[Key, Array], floors: Mapping[Key, float]
-) -> list[Home]:
-    """The same behind what the floor itself has of it. What waves with the clock makes runs differ as well, and shows
-    there first; an order that is none of the gear's is in the floor of neighbouring turns, and elsewhere only by its
-    traces."""
-    if where[0].coordinate == "time":
-        wave = in_the_floor(p.eq, left, after, floors)
-        if wave is None or not wave.frequency_hz or (where[0].first and where[0].share > wave.share):
-            return where  # what settles anew in every run comes back with the runs
-        return [wave, *where]
-    if where[0].share < HALF:
-        order = hidden_order(p.eq, left, after, floors)
-        return [order, *where] if order is not None and order.share > where[0].share else where
-    return where
 
 
 def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array]) -> tuple[float, float]:

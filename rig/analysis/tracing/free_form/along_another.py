@@ -1,0 +1,69 @@
+"""Whether what seems to live along one coordinate is a law along another, as it is at the port where it acts.
+
+Bins of one channel see the product of two things, a gain that falls with the speed under several weights, best along
+whatever tells those runs apart: the time they were taken at, what the torque has been. And what wears off after a
+reversal is at the same angle in every run that turns back there. A form at the right port needs the one coordinate
+alone, and has more evidence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from rig.analysis.tracing.fit.equations import Key
+from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.free_form.fitted import Fitted, fitted, likeliest, of_some_rows, possible
+from rig.analysis.tracing.free_form.form import FreeForm
+from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.thresholds import EVIDENCE, FAR_LESS, PLAIN_ENOUGH
+from rig.analysis.tracing.workers import each
+from rig.model.effect import Array
+
+PLAIN: Final = ("motor_angle", "load_angle", "speed", "load", "direction")
+LIKELY: Final = 3  # forms along a coordinate that few rows speak for most
+ANYTHING: Final = ("time", "temperature", "memory")  # of many numbers, along which runs differ anyhow
+
+
+def along_another(p: Prepared, s: Solution, said: Home) -> Home | None:
+    """Another coordinate along which fitted runs want a form by far more than any along what is `said`, a plain one in
+    the place of time or memory by more; None where there is none, or a step at one moment or the clock is said. Where
+    the difference is less, what two of them share is now and then drawn better along the wrong one."""
+    if said.first or said.coordinate not in (*PLAIN, *ANYTHING):
+        return None
+    s = of_some_rows(p, s)
+    best = _best_along_each(p, s)
+    _, mine = best.get(said.coordinate, (None, 0.0))
+
+    def share(name: str) -> float:
+        return PLAIN_ENOUGH if name in PLAIN and said.coordinate in ANYTHING else FAR_LESS
+
+    better = {n: theirs for n, (_, theirs) in best.items() if theirs > EVIDENCE and mine < share(n) * theirs}
+    if not better:
+        return None
+    name = max(better, key=lambda n: better[n] * (1.0 if n in PLAIN else PLAIN_ENOUGH))
+    return Home(name, said.channel, _share(p, s, fitted(p, s, best[name][0]), said.channel))
+
+
+def _best_along_each(p: Prepared, s: Solution) -> dict[str, tuple[FreeForm, float]]:
+    """Of the curves along each coordinate that few rows speak for most the one that all rows do, and how much."""
+    along = {form: name for name in (*PLAIN, *ANYTHING) for form in possible(p, name) if not form.surface}
+    ranked = likeliest(p, s, list(along), len(along))
+    first = [form for name in (*PLAIN, *ANYTHING) for form in [f for f in ranked if along[f] == name][:LIKELY]]
+    evidence = each(lambda form: fitted(p, s, form).evidence, first)
+    made = sorted(zip(first, evidence, strict=True), key=lambda one: one[1])
+    return {along[form]: (form, theirs) for form, theirs in made}  # the last of each is the best
+
+
+def _share(p: Prepared, s: Solution, one: Fitted, channel: str) -> float:
+    """Of the excess of a channel of fitted runs, what the form takes."""
+
+    def over(of: Mapping[Key, Array]) -> float:
+        left = [of[key] / p.floors[key] for key in of if key[1] == channel]
+        return float(np.mean(np.concatenate(left) ** 2)) - 1.0
+
+    before, after = ({key: made.residual(key) for key in made.keys} for made in (s, one.solution))
+    return float(np.clip(1.0 - over(after) / max(over(before), 1e-9), 0.0, 1.0))
