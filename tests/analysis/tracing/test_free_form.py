@@ -193,11 +193,13 @@ def test_another_coordinate_is_said_where_far_more_speaks_for_it(
     monkeypatch.setattr(another, "of_some_rows", lambda p, s: s)
     monkeypatch.setattr(another, "_best_along_each", lambda p, s: {n: (n, e) for n, e in evidence.items()})
     monkeypatch.setattr(another, "fitted", lambda p, s, form: None)
-    monkeypatch.setattr(another, "_share", lambda p, s, one, channel: 0.8)
-    found = another.along_another(*NOBODY, Home(said, "M", 0.9))
-    assert (found.coordinate if found else None) == expected
-    if found:
-        assert (found.channel, found.share) == ("M", 0.8)
+    takes = {True: 0.9, False: 0.7}  # of what is left; less than what is said takes, the form is no better
+    for enough in (True, False):
+        monkeypatch.setattr(another, "_share", lambda p, s, one, channel: takes[enough])  # noqa: B023
+        found = another.along_another(*NOBODY, Home(said, "M", 0.9))
+        assert (found.coordinate if found else None) == (expected if enough else None)
+        if found:
+            assert (found.channel, found.share) == ("M", 0.9)
 
 
 @pytest.mark.parametrize("home", [Home("time_periodic", "M", 0.9), Home("time", "M", 0.9, first=True)])

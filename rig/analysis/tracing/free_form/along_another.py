@@ -31,21 +31,27 @@ ANYTHING: Final = ("time", "temperature", "memory")  # of many numbers, along wh
 def along_another(p: Prepared, s: Solution, said: Home) -> Home | None:
     """Another coordinate along which fitted runs want a form by far more than any along what is `said`, a plain one in
     the place of time or memory by more; None where there is none, or a step at one moment or the clock is said. Where
-    the difference is less, what two of them share is now and then drawn better along the wrong one."""
+    the difference is less, what two of them share is now and then drawn better along the wrong one; and an order that
+    no form has is not outdone by one that takes less of what is left."""
     if said.first or said.coordinate not in (*PLAIN, *ANYTHING):
         return None
     s = of_some_rows(p, s)
     best = _best_along_each(p, s)
     _, mine = best.get(said.coordinate, (None, 0.0))
 
-    def share(name: str) -> float:
-        return PLAIN_ENOUGH if name in PLAIN and said.coordinate in ANYTHING else FAR_LESS
+    def simpler(name: str) -> bool:
+        return name in PLAIN and said.coordinate in ANYTHING
 
-    better = {n: theirs for n, (_, theirs) in best.items() if theirs > EVIDENCE and mine < share(n) * theirs}
+    def far_less(theirs: float, name: str) -> bool:
+        return theirs > EVIDENCE and mine < (PLAIN_ENOUGH if simpler(name) else FAR_LESS) * theirs
+
+    better = {name: theirs for name, (_, theirs) in best.items() if far_less(theirs, name)}
     if not better:
         return None
     name = max(better, key=lambda n: better[n] * (1.0 if n in PLAIN else PLAIN_ENOUGH))
-    return Home(name, said.channel, _share(p, s, fitted(p, s, best[name][0]), said.channel))
+    takes = _share(p, s, fitted(p, s, best[name][0]), said.channel)
+    enough = takes >= (PLAIN_ENOUGH if simpler(name) else 1.0) * min(said.share, 1.0)
+    return Home(name, said.channel, takes) if enough else None
 
 
 def _best_along_each(p: Prepared, s: Solution) -> dict[str, tuple[FreeForm, float]]:
