@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -58,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json and args.json.parent != target:  # that folder is made
         refuse_unwritable_file(args.json, "--json")
     with alone_in(target):
-        found = trace(args.campaign, args.hold_out)
+        found = trace(args.campaign, args.hold_out, progress())
         tell(found, unfinished(args.campaign))
         load(PAGE)  # only now: a trace needs all the memory there is, and a page has much to import
         from rig.report.trace.campaign import provenance
@@ -75,6 +78,17 @@ def run(args: argparse.Namespace) -> int:
                     write_trace(args.json, found)
     print(f"written {written}\nreport {page}")
     return int(exit_of(found))
+
+
+def progress() -> Callable[[str], None]:
+    """Tells a terminal what a trace is at, and since when: it may take minutes. Nobody else is told."""
+    began = time.monotonic()
+
+    def say(text: str) -> None:
+        if sys.stderr.isatty():
+            print(f"{time.monotonic() - began:4.0f} s  {text}", file=sys.stderr, flush=True)
+
+    return say
 
 
 def exit_of(found: Trace) -> Exit:

@@ -12,7 +12,7 @@ import pytest
 from rig.analysis.tracing.runs.holdout import refuse_unmatched, split
 from rig.cli import main
 from rig.commands.targets import alone_in
-from rig.commands.trace import run
+from rig.commands.trace import progress, run
 from rig.core.errors import Exit, UsageError
 from tests.hostile.test_campaigns import campaign
 from tests.report.trace import made_up
@@ -118,3 +118,14 @@ def test_of_many_runs_the_first_are_named_and_the_rest_are_counted() -> None:
         refuse_unmatched(names, ["xyz"])
     with pytest.raises(UsageError, match="did you mean 'run-17'"):
         refuse_unmatched(names, ["run17"])
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_terminal_is_told_what_a_trace_is_at_and_nobody_else(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.stderr.isatty", lambda: terminal)
+    progress()("36 runs read")
+    heard = capsys.readouterr()
+    assert heard.out == ""
+    assert heard.err == ("   0 s  36 runs read\n" if terminal else "")

@@ -14,6 +14,7 @@ from rig.analysis.tracing.floor.jumps import EDGE, FAR, among, heights, jumps
 from rig.analysis.tracing.floor.steps import Steps, _rested, _sure, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _as_one, _heights
 from rig.analysis.tracing.runs.holdout import HELD_PART
+from rig.analysis.tracing.selection import hidden
 from rig.analysis.tracing.thresholds import STEP
 from rig.model.effects.missed_counts import LOAD
 from tests.analysis.tracing.spiked import RATIO, Columns, spiked, started
@@ -386,6 +387,22 @@ def test_a_fitted_run_that_stands_far_above_its_floor_is_said_though_unseen_runs
     assert found.verdict.effects == ()
     assert found.verdict.sentence.startswith("load_10nm_1 has ")
     assert "load_10nm_2, taken alike, has not" in found.verdict.sentence
+
+
+def test_of_a_run_that_nothing_was_taken_like_it_is_said_so() -> None:
+    def at(rpm: float, name: str) -> Any:
+        return SimpleNamespace(name=name, rpm=rpm)
+
+    def told(*runs: Any) -> bool:
+        split = SimpleNamespace(fitted=(0, 1), held_out=tuple(range(2, len(runs))))
+        p: Any = SimpleNamespace(eq=SimpleNamespace(runs=runs), split=split)
+        return hidden._is_repeated(p, runs[0])
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(hidden, "alike", lambda one, other: one.rpm == other.rpm)
+        assert not told(at(60.0, "a"), at(200.0, "b"), at(200.0, "c"))
+        assert not told(at(60.0, "a"), at(200.0, "b"), at(60.0, f"a ({HELD_PART})"))  # a part of itself says nothing
+        assert told(at(60.0, "a"), at(200.0, "b"), at(60.0, "c"))
 
 
 @pytest.mark.parametrize(("of_the_load", "share"), [(True, 0.95), (False, 0.1)])

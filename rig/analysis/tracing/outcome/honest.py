@@ -80,7 +80,7 @@ def not_told(found: Sequence[Parameter], runs: Sequence[Recording]) -> list[str]
         )
     if left := [p for p in left_open(found) if p not in below]:
         out.append(
-            f"The fitted runs do not determine {in_words(left)}: by them it may be zero or below, and in every gear "
-            "it is above."
+            f"The fitted runs do not determine {in_words(left)}: the interval reaches zero, and no gear has nothing of "
+            "it."
         )
     return out

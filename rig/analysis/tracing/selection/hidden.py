@@ -28,6 +28,7 @@ from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER
 from rig.analysis.tracing.runs.alike import alike, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
+from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.next_run import along
 from rig.analysis.tracing.selection.sentences import how_often, of_the_rest
@@ -169,11 +170,19 @@ def _in_one_run(p: Prepared, s: Solution) -> Conclusion | None:
         what = f", which {twins[0].name}, taken alike, has not: something happened in that run"
     else:
         where = home(p.eq, {k: s.residual(k) for k in s.keys}, p.floors) or [WHERE_IT_TURNS_BACK]
-        coordinate = where[0].coordinate
-        what = f", and no run taken alike is without it; it lives in {coordinate.replace('_', ' ')}"
+        coordinate, said = where[0].coordinate, "no run taken alike is without it"
+        if not _is_repeated(p, run):
+            said = "no other run was taken like it, so that none can say whether it comes again"
+        what = f", and {said}; it lives in {coordinate.replace('_', ' ')}"
     sentence = f"{left}{what}. No effect of the library explains it; unseen runs leave nothing."
     verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, None, sentence)
     return Conclusion(verdict, None, (coordinate,), along(coordinate))
+
+
+def _is_repeated(p: Prepared, run: Recording) -> bool:
+    """Whether another run was taken alike."""
+    every = [p.eq.runs[i] for i in (*p.split.fitted, *p.split.held_out)]
+    return any(alike(other, run) for other in every if whole_run(other.name) != whole_run(run.name))
 
 
 def _in_a_burst(p: Prepared, s: Solution) -> Conclusion | None:
