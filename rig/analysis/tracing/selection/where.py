@@ -30,8 +30,8 @@ def where_left(
     where = [WHERE_IT_TURNS_BACK]
     if line is not None or p.held_out.loud(elsewhere, one):
         left, seen, theirs = _left(p, s, floors, p.held_out.worst(elsewhere)[0])
-        where = home(p.eq, left, seen)
-        if where and theirs:
+        where = home(p.eq, left, seen) or where
+        if theirs:
             where = _in_the_floor_too(p, where, left, after, {**floors, **p.held_out.floors})
             if line is None and (found := along_another(p, s, where[0])):
                 where = [found, *where]
@@ -49,7 +49,8 @@ def _left(
     if unseen < LITTLE or max(loudness(left, floors).values()) > QUIET**2:
         return left, floors, True
     every = fit(design(s.design.eq, s.design.terms, (*p.split.fitted, *p.split.held_out)))
-    return {key: every.residual(key) for key in every.keys}, {**floors, **p.held_out.floors}, False
+    floors = {**floors, **p.held_out.floors}
+    return {key: every.residual(key) for key in every.keys if key in floors}, floors, False
 
 
 def _in_the_floor_too(
