@@ -77,7 +77,7 @@ def folders_of_runs(folder: Path) -> list[Path]:
     if not places:
         deeper = sorted({path.parent.parent.name for path in folder.glob("[!.]*/*/manifest.json")})
         hint = f"; {deeper[-1]} in it does" if deeper else ""
-        raise UsageError(f"{folder} holds no run: expected folders with a manifest.json in it{hint}")
+        raise UsageError(f"{folder} holds no run: expected folders, each with a manifest.json{hint}")
     return places
 
 
