@@ -8,20 +8,18 @@ alone, and has more evidence.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.free_form.fitted import Fitted, fitted, likeliest, of_some_rows, possible
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.rest.joined import loudness
 from rig.analysis.tracing.thresholds import EVIDENCE, FAR_LESS, PLAIN_ENOUGH
 from rig.analysis.tracing.workers import each
-from rig.model.effect import Array
 
 PLAIN: Final = ("motor_angle", "load_angle", "speed", "load", "direction")
 LIKELY: Final = 3  # forms along a coordinate that few rows speak for most
@@ -66,10 +64,6 @@ def _best_along_each(p: Prepared, s: Solution) -> dict[str, tuple[FreeForm, floa
 
 def _share(p: Prepared, s: Solution, one: Fitted, channel: str) -> float:
     """Of the excess of a channel of fitted runs, what the form takes."""
-
-    def over(of: Mapping[Key, Array]) -> float:
-        left = [of[key] / p.floors[key] for key in of if key[1] == channel]
-        return float(np.mean(np.concatenate(left) ** 2)) - 1.0
-
-    before, after = ({key: made.residual(key) for key in made.keys} for made in (s, one.solution))
-    return float(np.clip(1.0 - over(after) / max(over(before), 1e-9), 0.0, 1.0))
+    left = ({key: made.residual(key) for key in made.keys} for made in (s, one.solution))
+    before, after = (loudness(e, p.floors)[channel] - 1.0 for e in left)
+    return float(np.clip(1.0 - after / max(before, 1e-9), 0.0, 1.0))

@@ -30,8 +30,9 @@ def where_left(
     where = [WHERE_IT_TURNS_BACK]
     if line is not None or p.held_out.loud(elsewhere, one):
         left, seen, theirs = _left(p, s, floors, p.held_out.worst(elsewhere)[0])
-        where = home(p.eq, left, seen) or where
-        if theirs:
+        lives = home(p.eq, left, seen)
+        where = lives or where
+        if lives and theirs:
             where = _in_the_floor_too(p, where, left, after, {**floors, **p.held_out.floors})
             if line is None and (found := along_another(p, s, where[0])):
                 where = [found, *where]
