@@ -17,8 +17,8 @@ SPEEDS = np.tile([6.0, 12.5, -6.0, 21.0, 31.0, -21.0, 42.0, -42.0], 2)  # rad/s,
 USED = np.tile(150.0 * np.arange(8), 2)  # s since the morning
 
 
-def selected(*names: str) -> Any:
-    """That stands, of runs that go one way."""
+def selected(*names: str, left: dict[tuple[int, str], float] | None = None) -> Any:
+    """That stands, of runs that go one way, with so many floors left in blocks of unseen ones."""
     runs = [
         SimpleNamespace(
             locked=False,
@@ -32,13 +32,30 @@ def selected(*names: str) -> Any:
         rows={(i, "M") for i in range(len(runs))},
         noise=SimpleNamespace(sigma={"M": 0.002}, local={"M": 0.0}),
     )
-    return SimpleNamespace(names=set(names), solution=SimpleNamespace(design=SimpleNamespace(eq=eq)))
+    at = SimpleNamespace(residuals=lambda s, held: left or {}, ratio=lambda e, keys: max(e[key] for key in keys))
+    solution = SimpleNamespace(design=SimpleNamespace(eq=eq))
+    return SimpleNamespace(names=set(names), solution=solution, held=None, p=SimpleNamespace(held_out=at))
 
 
-def wanted(monkeypatch: pytest.MonkeyPatch, friction: Sequence[float] | np.ndarray, *names: str) -> bool:
+def wanted(
+    monkeypatch: pytest.MonkeyPatch,
+    friction: Sequence[float] | np.ndarray,
+    *names: str,
+    left: dict[tuple[int, str], float] | None = None,
+) -> bool:
     """Whether a look is wanted where the runs have that much more friction than the baseline, N·m."""
     monkeypatch.setattr(means, "offset", lambda s, run, channel: float(np.sign(SPEEDS[run]) * friction[run]))
-    return means.wanted(selected(*names))
+    return means.wanted(selected(*names, left=left))
+
+
+@pytest.mark.parametrize(("channel", "left", "asked"), [
+    ("A", 6.0, False), ("L", 6.0, False), ("M", 6.0, True), ("R", 6.0, True), ("A", 1.5, True),
+])  # fmt: skip
+def test_none_is_wanted_where_something_is_left_that_no_friction_of_the_motor_explains(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, channel: str, left: float, asked: bool
+) -> None:
+    falling = scatter(rng) + 0.02 * np.exp(-np.abs(SPEEDS) / 8.0)
+    assert wanted(monkeypatch, falling, left={(0, channel): left}) is asked
 
 
 def scatter(rng: np.random.Generator) -> np.ndarray:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from rig.analysis.tracing.fit.bank import Bank, Products
 from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.thresholds import CLEAR, FAINTEST, NOISE_ALONE
+from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
 
 
@@ -48,22 +49,21 @@ def _own(products: Products, d: Design) -> tuple[Array, ...]:
 def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, Array]:
     """Products of the model's columns from `first` on with the whole bank, noise taken off, by channel: (p, width)."""
 
-    def of(key: Key) -> list[tuple[npt.NDArray[np.int64], npt.NDArray[np.floating]]]:
-        made: list[tuple[npt.NDArray[np.int64], npt.NDArray[np.floating]]] = []
-        for part in (p for p in d.parts[key] if p.at[0] >= first):
-            w = d.eq.noise.weight(key[1])
-            made.append((part.at, w * (part.z.whole().T.astype(np.float32) @ bank.columns[key])))
-            if key in bank.spoilt and part.spoilt is not None:
-                w *= d.eq.stands_for[key]
-                made.append((part.at, -w * (part.spoilt.whole().T.astype(np.float32) @ bank.spoilt[key])))
-        return made
+    def of(keys: Sequence[Key]) -> dict[str, Array]:
+        out = {c: np.zeros((d.size, wide)) for c, wide in bank.widths().items()}
+        for key in keys:
+            w, u = d.eq.noise.weight(key[1]), out[key[1]]
+            for part in (p for p in d.parts[key] if p.at[0] >= first):
+                u[part.at] += w * (part.z.whole().T.astype(np.float32) @ bank.columns[key])
+                if key in bank.spoilt and part.spoilt is not None:
+                    noise = part.spoilt.whole().T.astype(np.float32) @ bank.spoilt[key]
+                    u[part.at] -= w * d.eq.stands_for[key] * noise
+        return out
 
-    out = {c: np.zeros((d.size, wide)) for c, wide in bank.widths().items()}
-    mine = [key for key in keys if key in bank.columns]
-    for key in mine:
-        for at, m in of(key):
-            out[key[1]][at] += m
-    return {c: m[first:] for c, m in out.items()}
+    mine = sorted((key for key in keys if key in bank.columns), key=lambda key: -bank.columns[key].size)
+    with ThreadPoolExecutor(WORKERS) as pool:  # blocks by turns: products of large matrices leave the lock alone
+        parts = list(pool.map(of, [mine[i::WORKERS] for i in range(WORKERS)]))
+    return {c: np.sum([part[c][first:] for part in parts], axis=0) for c in bank.widths()}
 
 
 def gradient(bank: Bank, s: Solution) -> dict[str, Array]:

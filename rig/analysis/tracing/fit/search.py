@@ -17,6 +17,7 @@ from rig.analysis.tracing.fit.own_reading import leaves_most
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.scan import Drop, Own, cross, drops, own
 from rig.analysis.tracing.thresholds import CLOSEST, EVIDENCE, MOST, NEARLY, RELATIVE, SMALLEST, STILL, STILL_RUN
+from rig.analysis.tracing.workers import each
 from rig.model.effect import Array, Fit, Reach
 
 ROUNDS = 4
@@ -98,8 +99,8 @@ class Search:
         for key in self.keys:
             place = self.bank.places[key[1]][found.term]
             if place is not None and key in self.bank.columns:
-                f = self.bank.columns[key][:, place] @ found.coefficients
-                most = max(most, float(np.sqrt(np.mean(f**2))) / d.eq.noise.sigma[key[1]])
+                f = self.bank.columns[key][:, place] @ found.coefficients.astype(np.float32)
+                most = max(most, float(np.sqrt(f @ f / f.size)) / d.eq.noise.sigma[key[1]])
         return most
 
 
@@ -173,8 +174,16 @@ def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], cover
         if r.evidence > NEARLY * worth[0].evidence:
             close.setdefault((r.term.name, *_chosen(r.term)), r)
     first = list(close.values())[:CLOSEST]
-    made = [(r, refine(d, r.term, runs, covered)[1]) for r in first]
-    return max(made, key=lambda one: _worth(one[1]))
+
+    def refined(r: Scored) -> tuple[float, Term]:
+        s = refine(d, r.term, runs, covered)[1]
+        return _worth(s), s.design.terms[-1]
+
+    if len(first) == 1:
+        return first[0], refine(d, first[0].term, runs, covered)[1]
+    made = each(refined, first)
+    best = max(range(len(first)), key=lambda i: made[i][0])
+    return first[best], fit(extended(d, made[best][1], runs))
 
 
 def _worth(s: Solution) -> float:

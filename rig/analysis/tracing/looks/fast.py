@@ -55,22 +55,27 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     ways = [split(again.runs, hold_out, swapped).held_out for swapped in (False, True)]
     for swapped in (False, True) if ways[0] != ways[1] else (False,):
         p = _prepared(again, hold_out, swapped)
-        if p is not None and (made := _beside(so_far, found, p)) is not None:
+        if p is None:
+            continue
+        start = fit(design(p.eq, _kept(so_far), p.split.fitted))
+        ranked = _ranked(p, start, _covered(p)) if _shows_a_mode(p, start, _covered(p)) else ()
+        if ranked and ranked[0].term.name not in NAMES:
+            break  # something else explains more, and of other repeats of the same it would as well
+        if (made := _beside(so_far, found, p, start, ranked)) is not None:
             return made
     return so_far, found
 
 
-def _beside(so_far: Selected, found: Found, p: Prepared) -> tuple[Selected, Found] | None:
+def _kept(so_far: Selected) -> list[Term]:
+    """What had a name but for modes."""
+    return [term for term in so_far.solution.design.terms if term.name not in NAMES]
+
+
+def _beside(
+    so_far: Selected, found: Found, p: Prepared, start: Solution, ranked: Sequence[Scored]
+) -> tuple[Selected, Found] | None:
     """None where no mode counts."""
-    beside_it = [term for term in so_far.solution.design.terms if term.name not in NAMES]
-    start = fit(design(p.eq, beside_it, p.split.fitted))
-    covered = _covered(p)
-    if not _shows_a_mode(p, start, covered):
-        return None
-    calm = not beside_it and (still(start, p.floors) or is_calm(p))
-    ranked = _ranked(p, start, covered)
-    if ranked[0].term.name not in NAMES:  # something else explains more
-        return None
+    covered, calm = _covered(p), not _kept(so_far) and (still(start, p.floors) or is_calm(p))
     for law in [law for one in ranked if one.term.name in NAMES for law in (one.term, *one.laws)]:
         other = _with(law, p, start, covered, calm)
         if _counts(other, so_far) and not (calm and not is_certain(other, p.held_out)):
