@@ -9,11 +9,10 @@ import struct
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-import can
-
 from drivers.claim import connect_alone
 from drivers.queueing import Queueing
 from drivers.unopened import first_line, why_unopened
+from rig.core.can_libraries import can
 from rig.core.clock import NEVER, Clock
 from rig.core.errors import NotReady
 

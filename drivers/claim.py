@@ -17,8 +17,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, final
 
-import can
-
+from rig.core.can_libraries import can
 from rig.core.errors import NotReady
 
 FOLDERS = (Path("/run/lock"), Path("/tmp"))  # the first that all users can write to: all have to mean the same

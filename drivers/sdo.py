@@ -12,17 +12,15 @@ import math
 import queue
 from typing import Any
 
-import canopen
-from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
-
 from drivers.bus import GONE, Bus
+from rig.core.can_libraries import canopen
 from rig.core.errors import NotReady
 
 logging.getLogger("canopen").setLevel(logging.CRITICAL)  # it logs what we say in sentences
 
 NO_OBJECT = 0x06020000  # abort code
 UNSURE = {0x05040000}  # abort codes that are no answer: the node itself ran out of time
-LOST = (SdoCommunicationError, *GONE)  # no answer, or an adapter that takes no frame any more, by whatever error
+LOST = (canopen.SdoCommunicationError, *GONE)  # no answer, or an adapter that takes no frame, by whatever error
 MISSING = object()
 
 
@@ -81,7 +79,7 @@ class Sdo:
         try:
             self._refuse_dead()
             return bytes(self._client.upload(index, sub))
-        except SdoAbortedError as why:
+        except canopen.SdoAbortedError as why:
             if why.code not in UNSURE and default is not MISSING:
                 return default  # type: ignore[no-any-return]
             raise Refused(f"{self._who} refused to read {index:04X}h:{sub}: {why}") from None
@@ -94,7 +92,7 @@ class Sdo:
         try:
             self._refuse_dead()
             self._client.upload(index, 0)
-        except SdoAbortedError as why:
+        except canopen.SdoAbortedError as why:
             return bool(why.code == NO_OBJECT)
         except LOST as why:
             raise NotReady(f"{self._who} does not answer (reading {index:04X}h: {why})") from None
@@ -127,7 +125,7 @@ class Sdo:
         try:
             self._refuse_dead()
             self._client.upload(index, sub)
-        except SdoAbortedError as why:
+        except canopen.SdoAbortedError as why:
             if why.code not in UNSURE:
                 return False
         except LOST:
@@ -145,7 +143,7 @@ class Sdo:
         try:
             self._refuse_dead()
             self._client.download(index, sub, value)
-        except SdoAbortedError as why:
+        except canopen.SdoAbortedError as why:
             raise Refused(f"{self._who} refused {index:04X}h:{sub} = {value[::-1].hex()}h: {why}") from None
         except LOST as why:
             raise NotReady(f"{self._who} does not answer (writing {index:04X}h:{sub}: {why})") from None

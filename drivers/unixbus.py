@@ -20,7 +20,7 @@ import struct
 import time
 from typing import Any
 
-import can
+from rig.core.can_libraries import can
 
 FRAME = struct.Struct("<IB3x8sQ")
 EXTENDED, REMOTE, ERROR = 1 << 31, 1 << 30, 1 << 29

@@ -6,9 +6,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, ClassVar
 
-import can
-
 from rig.bench import Bench, read, twin_parameters
+from rig.core.can_libraries import can
 from rig.core.procedure import Procedure
 from rig.core.sample import Sample
 from rig.guard import Guard

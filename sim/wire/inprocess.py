@@ -7,8 +7,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, final
 
-import can
-
+from rig.core.can_libraries import can
 from rig.core.clock import Clock
 from sim.wire.assembly import Assembly
 from sim.wire.bus import Bus
