@@ -17,6 +17,8 @@ from rig.analysis.tracing.workers import each
 from rig.model.effect import Array
 
 FINER: Final = (2, 4)  # times as fine as the coarsest, while fitted runs want it
+DOUBLED: Final = 4  # times as many numbers in a form that is a product of two factors, each twice as fine
+WIDEST: Final = 500  # numbers of a form: of 1600, as waves along a curve would have, a search's rows are gigabytes
 LIKELY: Final = 8  # forms that few rows speak for most
 TRIED: Final = 3  # forms with most evidence that unseen runs are asked about
 WORTH: Final = 0.95  # of what unseen runs leave, RMS: a form that takes less is none to tell of
@@ -45,8 +47,10 @@ def drawn(p: Prepared, s: Solution, after: Mapping[Key, Array], coordinate: str)
 
 
 def _refined(p: Prepared, s: Solution, coordinate: str, one: Fitted) -> Fitted:
-    """Finer, as long as that is worth its numbers."""
+    """Finer, as long as that is worth its numbers, and they have room."""
     for finer in FINER:
+        if DOUBLED * (one.solution.x.size - s.x.size) > WIDEST:
+            break
         (again,) = (fitted(p, s, form) for form in possible(p, coordinate, finer) if form.words == one.form.words)
         if again.evidence <= one.evidence:
             break
