@@ -126,6 +126,32 @@ def test_a_law_without_a_name_is_not_asked_where_nothing_is_left(monkeypatch: py
         assert len(kept.solution.design.terms) == expected
 
 
+@pytest.mark.parametrize(("loud", "expected"), [(False, 3), (True, 2)])
+def test_one_more_term_of_an_effect_that_stands_counts_where_it_explains_everything(
+    monkeypatch: pytest.MonkeyPatch, loud: bool, expected: int
+) -> None:
+    """The search found a, b, a once more, and what chases b's first law."""
+
+    def standing(names: tuple[str, ...]) -> Any:
+        terms = tuple(SimpleNamespace(name=name) for name in names)
+        solution, p = (
+            SimpleNamespace(design=SimpleNamespace(terms=terms)),
+            SimpleNamespace(own=SimpleNamespace(line=None)),
+        )
+        return SimpleNamespace(p=p, solution=solution, loud=len(names) < 3 or loud, left=3.0 - len(names) / 2)
+
+    def selected_again(p: Any, found: Any, *_: object) -> Any:
+        return standing(tuple(term.name for term in found.solution.design.terms))
+
+    monkeypatch.setattr(further, "select", selected_again)
+    monkeypatch.setattr(further, "fit", lambda design: SimpleNamespace(design=design))
+    monkeypatch.setattr(further, "reduced", lambda d, gone: SimpleNamespace(terms=d.terms[: min(gone)]))
+    monkeypatch.setattr(further, "replace", lambda found, solution: SimpleNamespace(solution=solution))
+    found: Any = SimpleNamespace(solution=standing(("a", "b", "a", "c")).solution, names=("a", "b", "c"))
+    kept = further.try_prefixes(standing(("a",)), found, (), None)  # type: ignore[arg-type]
+    assert len(kept.solution.design.terms) == expected
+
+
 def test_what_is_all_there_is_in_a_channel_of_its_own_is_named_beside_a_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     """A weight stands in L, something loud is left in M: a runout in A is neither's."""
     monkeypatch.setattr(further, "confounders_in", lambda solution: [])

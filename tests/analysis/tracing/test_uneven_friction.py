@@ -28,12 +28,15 @@ def run(seed: int, more: float, *, zero: float = 0.0, pulls: float = 0.0, **othe
 
 def standstill(zero: float = 0.0, noise: float = NOISE) -> Any:
     tau_m = zero + noise * np.random.default_rng(9).standard_normal(ROWS)
-    return SimpleNamespace(procedure="standstill", has=BOTH, locked=False, pieces=(SimpleNamespace(tau_m=tau_m),))
+    pieces = (SimpleNamespace(tau_m=tau_m),)
+    return SimpleNamespace(procedure="standstill", has=BOTH, locked=False, pieces=pieces, ratio=RATIO)
 
 
-def found(more: float, still: Any = None, floor: float = FLOOR, **of_the_runs: Any) -> UnevenFriction | None:
+def found(
+    more: float, still: Any = None, floor: float = FLOOR, torque_zero: float = 0.0, **of_the_runs: Any
+) -> UnevenFriction | None:
     runs = [run(seed, more, **of_the_runs) for seed in (1, 2, 3)]
-    return uneven_friction([*runs, still or standstill()], floor)
+    return uneven_friction([*runs, still or standstill()], floor, torque_zero)
 
 
 @pytest.mark.parametrize(("more", "way"), [(10e-3, "forward"), (-10e-3, "backward")])
@@ -42,6 +45,14 @@ def test_friction_that_is_more_one_way_is_told_with_its_size_and_an_interval(mor
     assert told is not None
     assert abs(told.size - more) < told.half < 0.5e-3
     assert f"mN·m more torque {way} than the other way" in told.sentence()
+
+
+def test_a_pull_that_the_zero_of_the_torque_sensor_hides_is_no_friction() -> None:
+    hidden = [run(seed, 0.0, pulls=0.2) for seed in (1, 2, 3)]
+    for one in hidden:
+        one.pieces[0].tau_l -= 0.15
+    assert uneven_friction([*hidden, standstill()], FLOOR, 0.0) is not None
+    assert uneven_friction([*hidden, standstill()], FLOOR, -0.15) is None
 
 
 def test_alike_both_ways_or_within_the_floor_is_nothing() -> None:
@@ -66,5 +77,5 @@ def test_what_may_be_no_friction_is_not_called_so(still: Any, of_the_runs: Mappi
 
 
 def test_without_a_standstill_or_with_one_run_alone_nothing_is_told() -> None:
-    assert uneven_friction([run(seed, 10e-3) for seed in (1, 2)], FLOOR) is None
-    assert uneven_friction([run(1, 10e-3), standstill()], FLOOR) is None
+    assert uneven_friction([run(seed, 10e-3) for seed in (1, 2)], FLOOR, 0.0) is None
+    assert uneven_friction([run(1, 10e-3), standstill()], FLOOR, 0.0) is None

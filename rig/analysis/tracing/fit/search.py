@@ -23,6 +23,7 @@ from rig.model.effect import Array, Fit, Reach
 ROUNDS = 4
 RUNS_AWAY = 1.5  # times what was left before: columns that lean on a little too much are off by less
 SETTLED = 2e-3  # relative: then columns made with the old values are off by a fiftieth of the floor at 30 times it
+ROUGHLY = 1e-2  # relative: enough to tell which term comes next
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,7 @@ def search(
         if not worth:
             break
         chosen, refined = _best_refined(s.design, worth, runs, covered)
-        s = settled(refined, runs, covered)
+        s = settled(refined, runs, covered, ROUGHLY)
         entered = s.design.terms[-1]
         s, greedy = _without_greedy(_pruned(s), runs)
         d = s.design
@@ -149,7 +150,7 @@ def search(
             barren.add(chosen.term)
         if _carries(d) and not carried:
             break  # columns of the bank go by a torque without that weight: they are made anew
-    return Found(s, ranking)
+    return Found(settled(s, runs, covered) if s.design.terms else s, ranking)
 
 
 def _carries(d: Design) -> bool:
@@ -216,12 +217,12 @@ def still(s: Solution, floors: Mapping[Key, float]) -> bool:
     return max(square.values()) < STILL_RUN**2
 
 
-def settled(s: Solution, runs: Sequence[int], covered: Reach) -> Solution:
-    """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says, or until it runs away from it:
-    without a load angle an inertia that comes out too large can make one that is larger still."""
+def settled(s: Solution, runs: Sequence[int], covered: Reach, enough: float = SETTLED) -> Solution:
+    """Refitted until what the columns lean on (θ̃_p, inertias) is `enough` what the fit says, or until it runs away from
+    it: without a load angle an inertia that comes out too large can make one that is larger still."""
     for _ in range(ROUNDS):
         d = s.design
-        eq = leaning(d.eq, s, SETTLED)
+        eq = leaning(d.eq, s, enough)
         if eq is d.eq:
             break
         terms = d.terms

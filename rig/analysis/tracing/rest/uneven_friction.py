@@ -42,9 +42,10 @@ class UnevenFriction:
         )
 
 
-def uneven_friction(runs: Sequence[Recording], floor: float) -> UnevenFriction | None:
-    """Of the runs of a campaign, standstill among them; None where both ways are alike to `floor` [N·m], the reading
-    may have that zero, or something pulls one way."""
+def uneven_friction(runs: Sequence[Recording], floor: float, torque_zero: float) -> UnevenFriction | None:
+    """Of the runs of a campaign, standstill among them, whose torque sensor has that zero [N·m]; None where both ways
+    are alike to `floor` [N·m], the reading may have that zero, or something pulls one way: a weight out of balance does
+    where the output goes a part of its turn, and the sensor's zero may hide it (exam 92, case 34)."""
     still = [r for r in runs if r.procedure == "standstill" and "tau_m" in r.has]
     both = [m for r in runs if (m := _mean_of_both_ways(r)) is not None]
     if not still or len(both) < RUNS:
@@ -52,7 +53,7 @@ def uneven_friction(runs: Sequence[Recording], floor: float) -> UnevenFriction |
     found = np.array([motor for motor, _ in both])
     mean, error = float(found.mean()), float(found.std(ddof=1)) / np.sqrt(found.size)
     zero = max(abs(float(np.mean(x))) if np.ptp(x := _all(r, "tau_m")) > 0 else np.inf for r in still)
-    pulled = float(np.mean([load for _, load in both]))
+    pulled = float(np.mean([load for _, load in both])) - torque_zero / still[0].ratio
     if zero > STILL * abs(mean) or not abs(pulled) <= CARRIED * abs(mean):
         return None
     if abs(mean) < max(LARGE * floor, ALIKE * error):

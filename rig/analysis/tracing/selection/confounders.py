@@ -11,7 +11,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, design, extended, fit
 from rig.analysis.tracing.fit.search import Scored, reduced
-from rig.analysis.tracing.nameless.angles import OtherScale
+from rig.analysis.tracing.nameless.angles import OtherScale, WarmedMount
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag, WoundCable
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift, SharpError
 from rig.analysis.tracing.nameless.frames import PulledAside
@@ -240,6 +240,13 @@ CONFOUNDERS: Final = {
         "load_angle",
         "The load angle runs away from the motor's by the same with every turn, at any speed, and comes back: one of "
         "them is counted to another scale, or the ratio is another than was stated. No effect of the library does so.",
+        mimics=frozenset({"missed_counts"}),
+    ),
+    "warmed_mount": Confounder(
+        WarmedMount(),
+        "temperature",
+        "The load angle creeps away while the motor's friction makes heat and comes back as that leaks, as where what "
+        "holds its encoder twists as it warms; lost counts explain less, and no effect of the library does so.",
         mimics=frozenset({"missed_counts"}),
     ),
     "droop": Confounder(

@@ -42,7 +42,8 @@ def select_further(selected: Selected, found: Found, bank: Bank, runs: Sequence[
 def try_prefixes(selected: Selected, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
     """Where much is left and something was eliminated: what the search found first, without what came later. A true
     effect whose law is a little off leaves a rest that late terms chase, and beside those it has not its size any more.
-    What leaves least on unseen runs counts, where no name is lost by it."""
+    What leaves least on unseen runs counts, where no name is lost by it; with the names there are, where it explains
+    everything: one more term of an effect may be all that its first law wanted (exam 92, case 35)."""
     terms = found.solution.design.terms
     stay = {term.name for term in selected.solution.design.terms}
     if selected.p.own.line is not None or not selected.loud or not found.names or stay >= set(found.names):
@@ -54,7 +55,8 @@ def try_prefixes(selected: Selected, found: Found, runs: Sequence[int], covered:
         stands = {term.name for term in other.solution.design.terms}
         # a law without a name is asked only where something is left
         more = stands - stay - (frozenset() if selected.loud else CONFOUNDERS.keys())
-        if more and stay < stands and other.left < selected.left:
+        settles = stay == stands and selected.loud and not other.loud
+        if (settles or (more and stay < stands)) and other.left < selected.left:
             selected, stay = other, stands
     return selected
 

@@ -189,7 +189,8 @@ def _uneven(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Ke
     if not loudness:
         return None
     floor = float(np.median(loudness))
-    uneven = uneven_friction(p.campaign.runs, floor) or uneven_drag(s, p.split.fitted, p.split.held_out, floor)
+    friction = uneven_friction(p.campaign.runs, floor, s.value("tau_l0"))
+    uneven = friction or uneven_drag(s, p.split.fitted, p.split.held_out, floor)
     if uneven is None:
         return None
     verdict = Verdict(Status.UNKNOWN, names, (), "direction", None, None, uneven.sentence())
