@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
+from rig.analysis.tracing.nameless.angles import WarmedMount
 from rig.analysis.tracing.nameless.drags import OvalPulley, SectorDrag, SlowingDrag, UnevenDrag, WoundCable
 from rig.analysis.tracing.nameless.errors import ErrorBySpeed, ErrorDrift
 from rig.analysis.tracing.nameless.inertias import UnevenInertia
@@ -21,6 +22,7 @@ from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.trace import trace
 from rig.core.units import ARCSEC
 from rig.model.effect import Effect, Fit, Port
+from rig.model.effect.signals import Moved
 from tests.analysis.tracing.spiked import Columns, spiked
 from tests.analysis.tracing.test_gains import SOME
 from tests.blind.cases import Request
@@ -85,6 +87,19 @@ def test_a_cable_whose_clamp_slips_is_asked_for_where_the_output_goes_beyond_it(
     assert far[0] > 100.0
     assert len(WoundCable().shapes(replace(REACH, load_turns=0.6))) == 3
     assert WoundCable().shapes(replace(REACH, load_turns=0.1)) == ()
+
+
+def test_a_mount_that_warmed_in_a_fast_run_creeps_back_in_a_slow_one_and_reads_nothing_where_a_run_begins() -> None:
+    t, gear = np.linspace(0.0, 90.0, 500), replace(KNOWN, tau_c=0.2)
+    before, now = Moved(-61.0, -1.0, 40.0, 1600.0), Moved(0.0, 90.0, 1.0, 1.0)
+    after = WarmedMount().columns(replace(motion(n=500), t=t, past=(before, now), gear=gear), (45.0,))
+    cold = WarmedMount().columns(replace(motion(n=500), t=t, past=(now,), gear=gear), (45.0,))
+    (creeps,), (warms,) = (made[Port.READS_THETA_L].T for made in (after, cold))
+    assert creeps[0] == warms[0] == 0.0
+    assert np.all(np.diff(creeps) < 0)
+    assert np.all(np.diff(warms) > 0)
+    power = 0.2 * 1.0 + KNOWN.B_m  # W
+    assert warms[-1] == pytest.approx(power * 45.0 * (1 - np.exp(-2.0)) / WarmedMount.HEATED)
 
 
 @pytest.mark.parametrize(("law", "shape"), [(ErrorDrift(), ()), (ErrorBySpeed(), (1.0,))], ids=["time", "speed"])
