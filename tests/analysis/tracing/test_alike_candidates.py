@@ -31,6 +31,9 @@ def tried(monkeypatch: pytest.MonkeyPatch) -> list[Term]:
         return d, SimpleNamespace(gain=AS_REFINED[term], x=np.zeros(70), design=SimpleNamespace(terms=(term,)))
 
     monkeypatch.setattr(search, "refine", refined)
+    monkeypatch.setattr(search, "each", lambda of, items: [of(item) for item in items])
+    for name in ("extended", "fit"):
+        monkeypatch.setattr(search, name, lambda *given: None)
     return seen
 
 

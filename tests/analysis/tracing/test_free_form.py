@@ -146,17 +146,22 @@ def test_what_is_in_one_sensor_is_drawn_there_and_gone_from_every_channel(tmp_pa
     assert all(found.ratios_after[channel] < 1.2 for channel in ("theta_l", "tau_m", "tau_l"))
 
 
-@pytest.mark.parametrize(
-    ("vouched", "drawn"), [({"a", "b"}, ("a", 2)), ({"b"}, ("b", 1)), ({"d"}, None), (set(), None)]
-)
+@pytest.mark.parametrize(("vouched", "wide", "drawn"), [
+    ({"a", "b"}, 50, ("a", 2)),
+    ({"a", "b"}, 200, ("a", 1)),  # 800 numbers would have no room
+    ({"b"}, 50, ("b", 1)),
+    ({"d"}, 50, None),
+    (set(), 50, None),
+])  # fmt: skip
 def test_the_form_that_fitted_runs_want_most_is_drawn_as_fine_as_is_worth_it_if_unseen_runs_vouch_for_it(
-    vouched: set[str], drawn: tuple[str, int] | None, monkeypatch: pytest.MonkeyPatch
+    vouched: set[str], wide: int, drawn: tuple[str, int] | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     evidence = {("a", 1): 50.0, ("a", 2): 60.0, ("a", 4): 55.0, ("b", 1): 40.0, ("c", 1): 5.0, ("d", 1): 4.0}
 
     def fitted(p: Prepared, s: Solution, form: SimpleNamespace) -> SimpleNamespace:
         nats = evidence.get((form.words, form.finer), -1.0)
-        return SimpleNamespace(form=form, evidence=nats, worth=nats)
+        solution = SimpleNamespace(x=np.zeros(70 + wide * form.finer))
+        return SimpleNamespace(form=form, evidence=nats, worth=nats, solution=solution)
 
     def possible(p: Prepared, coordinate: str, finer: int = 1) -> list[SimpleNamespace]:
         return [SimpleNamespace(words=words, finer=finer) for words in "dbca"]
@@ -170,7 +175,8 @@ def test_the_form_that_fitted_runs_want_most_is_drawn_as_fine_as_is_worth_it_if_
     ours = {"fitted": fitted, "possible": possible, "likeliest": likeliest, "_vouched_for": vouched_for}
     for name, made in ours.items():
         monkeypatch.setattr(drawn_of, name, made)
-    assert drawn_of.drawn(*NOBODY, {}, "speed") == drawn
+    nobody, alone = NOBODY[0], SimpleNamespace(x=np.zeros(70))
+    assert drawn_of.drawn(nobody, alone, {}, "speed") == drawn  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
