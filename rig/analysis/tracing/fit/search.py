@@ -218,8 +218,8 @@ def still(s: Solution, floors: Mapping[Key, float]) -> bool:
 
 
 def settled(s: Solution, runs: Sequence[int], covered: Reach, enough: float = SETTLED) -> Solution:
-    """Refitted until what the columns lean on (θ̃_p, inertias) is `enough` what the fit says, or until it runs away from
-    it: without a load angle an inertia that comes out too large can make one that is larger still."""
+    """Refitted until what the columns lean on (θ̃_p, inertias) is what the fit says, to `enough`, or until it runs away
+    from it: without a load angle an inertia that comes out too large can make one that is larger still."""
     for _ in range(ROUNDS):
         d = s.design
         eq = leaning(d.eq, s, enough)
