@@ -49,9 +49,10 @@ def _own(products: Products, d: Design) -> tuple[Array, ...]:
 def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, Array]:
     """Products of the model's columns from `first` on with the whole bank, noise taken off, by channel: (p, width)."""
 
-    def of(keys: Sequence[Key]) -> dict[str, Array]:
+    def summed(some: Sequence[Key]) -> dict[str, Array]:
+        """Over some of the blocks."""
         out = {c: np.zeros((d.size, wide)) for c, wide in bank.widths().items()}
-        for key in keys:
+        for key in some:
             w, u = d.eq.noise.weight(key[1]), out[key[1]]
             for part in (p for p in d.parts[key] if p.at[0] >= first):
                 u[part.at] += w * (part.z.whole().T.astype(np.float32) @ bank.columns[key])
@@ -62,7 +63,7 @@ def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, A
 
     mine = sorted((key for key in keys if key in bank.columns), key=lambda key: -bank.columns[key].size)
     with ThreadPoolExecutor(WORKERS) as pool:  # blocks by turns: products of large matrices leave the lock alone
-        parts = list(pool.map(of, [mine[i::WORKERS] for i in range(WORKERS)]))
+        parts = list(pool.map(summed, [mine[i::WORKERS] for i in range(WORKERS)]))
     return {c: np.sum([part[c][first:] for part in parts], axis=0) for c in bank.widths()}
 
 

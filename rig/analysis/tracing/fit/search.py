@@ -180,7 +180,7 @@ def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], cover
         s = refine(d, r.term, runs, covered)[1]
         return _worth(s), s.design.terms[-1]
 
-    if len(first) == 1:
+    if len(first) == 1:  # by itself it need not be fitted twice
         return first[0], refine(d, first[0].term, runs, covered)[1]
     made = each(refined, first)
     best = max(range(len(first)), key=lambda i: made[i][0])
