@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+import rig.core.can_libraries  # noqa: F401  # before a test imports python-can: with all it brings it takes 1.6 s more
 from tests.chromium import ARGUMENTS, SIZE
 
 if TYPE_CHECKING:
