@@ -14,10 +14,10 @@ demo: .venv/ready
 test: .venv/ready-dev  ## types are checked beside the tests
 	$(MAKE) -j2 lint pytest
 
-# two workers more than two cores: some tests wait, for the time at the rig or for another process
+# a worker more than two cores: some tests wait, for the time at the rig or for another process
 pytest: .venv/ready-dev
 	$(BIN)/python -m tests.compiled
-	$(BIN)/python -m pytest -n 4 --dist loadgroup -m "not long"
+	$(BIN)/python -m pytest -n 3 --dist loadgroup -m "not long"
 
 inner: .venv/ready-dev  ## the fast part of the tests: a minute on an idle machine
 	$(BIN)/python -m pytest -n 2 -m "not slow and not long"

@@ -50,7 +50,7 @@ def test_intervals_cover_where_there_is_noise_alone() -> None:
     assert 0.90 < coverage(0.0, covariance) < 0.99
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_intervals_cover_where_four_runs_of_sixteen_tell_nearly_all() -> None:
     assert 0.91 < coverage(0.2, covariance, telling=4) < 0.99
 

@@ -216,7 +216,7 @@ def test_a_sensor_that_reads_more_one_way_in_slow_runs_and_lock_tests_alone_is_n
     assert found.verdict.coordinate == "load"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_torque_sensor_whose_scale_is_off_is_told_with_how_much(shared: Path, tmp_path: Path) -> None:
     found = spiked(tmp_path, shared / "cases" / "open-1", lambda c, began: {"tau_l": 1.05 * c["tau_l"]}, SOME)
     assert (found.verdict.status, found.verdict.effects) == (Status.UNKNOWN, ())

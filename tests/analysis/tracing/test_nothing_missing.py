@@ -37,8 +37,8 @@ def test_numbers_made_up_without_any_noise_have_nothing_hidden_in_their_rounding
     assert trace(tmp_path / "campaign").verdict.status == Status.NOTHING
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("height", "where"), [pytest.param(0.16, "load_angle", marks=pytest.mark.long), (0.0, None)])
+@pytest.mark.long
+@pytest.mark.parametrize(("height", "where"), [(0.16, "load_angle"), (0.0, None)])
 def test_what_is_a_little_above_the_floor_is_said_where_one_coordinate_foretells_it(
     tmp_path: Path, shared: Path, height: float, where: str | None
 ) -> None:

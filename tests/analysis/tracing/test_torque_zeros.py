@@ -32,7 +32,9 @@ def solution(monkeypatch: pytest.MonkeyPatch, creep: np.ndarray) -> Any:
     ]
     keys = [(i, c) for i in range(SPEEDS.size) for c in "AL"]
     eq = SimpleNamespace(runs=runs, rows=dict.fromkeys(keys))
-    return SimpleNamespace(design=SimpleNamespace(eq=eq), keys=keys, value=lambda name: {"compliance": SOFT}[name])
+    return SimpleNamespace(
+        design=SimpleNamespace(eq=eq, terms=()), keys=keys, value=lambda name: {"compliance": SOFT}[name]
+    )
 
 
 def test_beside_a_torque_sensor_that_creeps_a_late_angle_still_lies_on_a_line(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -59,7 +59,7 @@ def orders(found: Trace) -> dict[int, float]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("timed", [True, False])
+@pytest.mark.parametrize("timed", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_rigid_gear_has_its_error_and_no_stiffness(tmp_path: Path, timed: bool) -> None:
     found = bench(tmp_path, lambda motor, t: np.zeros_like(t), timed)
     assert found.verdict.status is Status.NOTHING
@@ -69,7 +69,7 @@ def test_a_rigid_gear_has_its_error_and_no_stiffness(tmp_path: Path, timed: bool
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("timed", [True, False])
+@pytest.mark.parametrize("timed", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_runout_and_the_flexspline_are_named_and_a_weight_is_its_rival(tmp_path: Path, timed: bool) -> None:
     found = bench(tmp_path, lambda motor, t: once_a_turn(motor, t) + on_the_flexspline(motor, t), timed)
     assert found.verdict.status is Status.AMBIGUOUS

@@ -40,7 +40,7 @@ def drag(c: Columns) -> np.ndarray:
 @pytest.mark.parametrize(
     ("both", "found", "names"),
     [
-        (True, BENT, ["quadratic_drag", "stribeck_friction"]),
+        pytest.param(True, BENT, ["quadratic_drag", "stribeck_friction"], marks=pytest.mark.long),
         pytest.param(False, PLAIN, ["stribeck_friction"], marks=pytest.mark.long),
         (False, BENT, ["stribeck_friction"]),
     ],

@@ -44,8 +44,8 @@ def test_of_what_there_is_without_load_it_is_no_part() -> None:
     )
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("springs", [False, pytest.param(True, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("springs", [False, True])
 def test_it_takes_the_place_of_a_spring_that_changes_with_the_angle_where_there_is_none(
     springs: bool, shared: Path, tmp_path: Path
 ) -> None:

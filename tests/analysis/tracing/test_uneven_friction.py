@@ -55,6 +55,29 @@ def test_a_pull_that_the_zero_of_the_torque_sensor_hides_is_no_friction() -> Non
     assert uneven_friction([*hidden, standstill()], FLOOR, -0.15) is None
 
 
+def one_way(way: float, more: float, speed: float = 30.0) -> Any:
+    """A run at a constant speed, rad/s, with friction larger by `more` forward than backward."""
+    tau_m = (FRICTION + more / 2 * way) * way + NOISE * np.random.default_rng(5).standard_normal(ROWS)
+    ones = np.ones(ROWS)
+    piece = SimpleNamespace(
+        way=way * ones, omega_m=way * speed * ones, tau_m=tau_m, tau_l=0.4 * way * ones, tau_ext=0 * ones
+    )
+    return SimpleNamespace(
+        procedure="constant_speed", locked=False, has=BOTH, load_stated=True, ratio=RATIO, pieces=(piece,)
+    )
+
+
+@pytest.mark.parametrize(
+    ("faster", "speeds", "told"), [(10e-3, (30, 31), True), (1e-3, (30, 31), False), (1e-3, (30, 40), True)]
+)
+def test_what_goes_away_as_the_motor_turns_faster_is_not_the_same_at_any_speed(
+    faster: float, speeds: tuple[float, float], told: bool
+) -> None:
+    slow = [run(seed, 10e-3) for seed in (1, 2, 3)]
+    fast = [one_way(way, faster, speed) for way, speed in zip((1.0, -1.0), speeds, strict=True)]
+    assert (uneven_friction([*slow, *fast, standstill()], FLOOR, 0.0) is not None) == told
+
+
 def test_alike_both_ways_or_within_the_floor_is_nothing() -> None:
     assert found(0.0) is None
     assert found(10e-3, floor=6e-3) is None

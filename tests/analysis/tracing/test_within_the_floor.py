@@ -108,7 +108,7 @@ def test_a_seal_that_rubs_within_every_run_is_told(tmp_path: Path, shared: Path)
     assert 1 / verdict.frequency_hz == pytest.approx(SEAL, rel=0.01)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_order_that_is_none_of_the_gears_is_told_where_nothing_was_repeated(tmp_path: Path, shared: Path) -> None:
     verdict = spiked(tmp_path, shared / "cases" / "open-1", untrue, NO_REPEATS).verdict
     assert (verdict.status, verdict.effects, verdict.coordinate) == (Status.UNKNOWN, (), "motor_angle")

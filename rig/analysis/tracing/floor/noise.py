@@ -115,8 +115,8 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         by_run |= _never_compared(eq, e, channel, among, found, friction)
         local[channel] = own_offset(solution, channel, usual, sigma[channel] ** 2 * kappa[channel])
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
-    if eq.runs[0].look.zeros and (scatter_of_zeros := about_a_line(solution)) is not None:
-        local["A"] = scatter_of_zeros
+    if zeros := eq.runs[0].look.zeros:
+        local["A"] = about_a_line(solution) or zeros
     design = solution.design
     white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)

@@ -34,7 +34,8 @@ def wanted(selected: Selected) -> bool:
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """The same where what shifts a run's zero is no zero of its own. It counts where it names a reading that comes late
     and nothing else more, and explains everything."""
-    looks = [replace(run.look, zeros=True) for run in so_far.p.campaign.runs]
+    scatter = about_a_line(so_far.solution) or 0.0
+    looks = [replace(run.look, zeros=scatter) for run in so_far.p.campaign.runs]
     there = with_torque_zeros(looking(campaign, looks), so_far.solution)
     other, ranked = searched(prepare(there, hold_out), frozenset({LATE}))
     late = not other.loud and other.names == {LATE, *so_far.names}

@@ -2,7 +2,9 @@
 which takes it on, so that no error shows it.
 
 It is told by what the motor's torque is in the mean of both ways where nothing hangs on the output, and by a run at
-standstill, which has the zero of its reading and none of the friction.
+standstill, which has the zero of its reading and none of the friction. Runs of one way each, at a like speed, tell
+whether it is as much when the motor turns faster: friction that falls as the motor speeds up may fall from more one way
+(exam 93, case 19).
 """
 
 from __future__ import annotations
@@ -14,13 +16,16 @@ from typing import Final
 import numpy as np
 from scipy.special import stdtrit
 
-from rig.analysis.tracing.runs.recording import Recording
+from rig.analysis.tracing.runs.recording import Recording, mean_speed, mean_way
 
 RUNS: Final = 2  # that turn both ways
 EACH_WAY: Final = 0.2  # of the rows, at least
 STILL: Final = 0.2  # of what is seen: a zero that is as much may be all of it
 CARRIED: Final = 0.5  # of what is seen, at the motor: what the load pulls one way
 ALIKE: Final = 5.0  # standard errors
+ONE_WAY: Final = 0.9  # of the rows
+AS_FAST: Final = 1.1  # times: speeds forth and back that make a pair
+STAYS: Final = 0.5  # of what is seen slowly: what is left of it faster, else it goes away with the speed
 LARGE: Final = 1.0  # floors of the motor's torque: less matters to nobody
 
 
@@ -44,8 +49,9 @@ class UnevenFriction:
 
 def uneven_friction(runs: Sequence[Recording], floor: float, torque_zero: float) -> UnevenFriction | None:
     """Of the runs of a campaign, standstill among them, whose torque sensor has that zero [N·m]; None where both ways
-    are alike to `floor` [N·m], the reading may have that zero, or something pulls one way: a weight out of balance does
-    where the output goes a part of its turn, and the sensor's zero may hide it (exam 92, case 34)."""
+    are alike to `floor` [N·m] or become so the faster the motor turns, the reading may have that zero, or something
+    pulls one way: a weight out of balance does where the output goes a part of its turn, and the sensor's zero may hide
+    it (exam 92, case 34)."""
     still = [r for r in runs if r.procedure == "standstill" and "tau_m" in r.has]
     both = [m for r in runs if (m := _mean_of_both_ways(r)) is not None]
     if not still or len(both) < RUNS:
@@ -56,17 +62,39 @@ def uneven_friction(runs: Sequence[Recording], floor: float, torque_zero: float)
     pulled = float(np.mean([load for _, load in both])) - torque_zero / still[0].ratio
     if zero > STILL * abs(mean) or not abs(pulled) <= CARRIED * abs(mean):
         return None
-    if abs(mean) < max(LARGE * floor, ALIKE * error):
+    if abs(mean) < max(LARGE * floor, ALIKE * error) or not _stays(runs, mean):
         return None
     return UnevenFriction(2.0 * mean, 2.0 * float(stdtrit(found.size - 1, 0.975)) * error)
+
+
+def _stays(runs: Sequence[Recording], mean: float) -> bool:
+    """Whether runs that turn one way each, where there are any forth and back as fast, have a fair part of that mean of
+    both ways [N·m] as well."""
+    turned = [(mean_speed(r), float(np.mean(_all(r, "tau_m")))) for r in runs if _turns_one_way(r)]
+    pairs = [
+        (forth + back) / 2
+        for fast, forth in turned
+        for slow, back in turned
+        if fast > 0 > slow and 1 / AS_FAST < -fast / slow < AS_FAST
+    ]
+    return not pairs or float(np.mean(pairs)) / mean > STAYS
+
+
+def _turns_one_way(run: Recording) -> bool:
+    return _is_free(run) and abs(mean_way(run)) > ONE_WAY
+
+
+def _is_free(run: Recording) -> bool:
+    """Whether it turned with nothing on it, as somebody stated, and its torques were read."""
+    if run.locked or run.procedure == "standstill" or not {"tau_m", "tau_l"} <= run.has or not run.load_stated:
+        return False
+    return not any(np.any(piece.tau_ext) for piece in run.pieces)
 
 
 def _mean_of_both_ways(run: Recording) -> tuple[float, float] | None:
     """Torque of the motor, and of the load at the motor, N·m, in the mean of both ways; None where it did not turn both
     ways with nothing on it, or one of them was not measured."""
-    if run.locked or run.procedure == "standstill" or not {"tau_m", "tau_l"} <= run.has or not run.load_stated:
-        return None
-    if any(np.any(piece.tau_ext) for piece in run.pieces):
+    if not _is_free(run):
         return None
     way = _all(run, "way")
     ways = [way == side for side in (1, -1)]

@@ -20,7 +20,7 @@ class Look:
     fast: bool = False  # rows twice as often, compared up to frequencies twice as high: chosen when it is read
     late_torque: float = 0.0  # s, by how much its torque sensor is brought forward: chosen when it is read
     late_load: float = 0.0  # s, the same of its load angle
-    zeros: bool = False  # its zeros are those of all others, but for what its speed makes of them
+    zeros: float = 0.0  # rad its zero is off the others, but for what speed makes of it; 0: any, its own
 
 
 FIRST = Look()
