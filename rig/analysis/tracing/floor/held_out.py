@@ -149,3 +149,13 @@ def _lenient(measured: Measured, eq: Equations, key: Key, rubs: float) -> float:
 def unseen(s: Solution, at: HeldOut) -> Design:
     """The model's columns on the held-out runs."""
     return design(replace(s.design.eq, noisy={}), s.design.terms, at.runs)
+
+
+def left_unseen(s: Solution, at: HeldOut) -> dict[Key, Array]:
+    """What a solution leaves on the held-out runs, (n,) by block, one run's columns at a time: of a form of hundreds of
+    numbers those of all runs are gigabytes."""
+    eq = replace(s.design.eq, noisy={})
+    left: dict[Key, Array] = {}
+    for run in at.runs:
+        left |= at.residuals(s, design(eq, s.design.terms, (run,)))
+    return left

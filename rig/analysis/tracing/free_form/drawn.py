@@ -9,11 +9,11 @@ from typing import Final
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.held_out import HeldOut, unseen
+from rig.analysis.tracing.floor.held_out import HeldOut, left_unseen
 from rig.analysis.tracing.free_form.fitted import Fitted, fitted, likeliest, possible
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.thresholds import EVIDENCE
-from rig.analysis.tracing.workers import each
+from rig.analysis.tracing.workers import each, give_back
 from rig.model.effect import Array
 
 FINER: Final = (2, 4)  # times as fine as the coarsest, while fitted runs want it
@@ -60,7 +60,8 @@ def _refined(p: Prepared, s: Solution, coordinate: str, one: Fitted) -> Fitted:
 
 def _vouched_for(p: Prepared, after: Mapping[Key, Array], one: Fitted) -> Drawn | None:
     """Where unseen runs have less left with it, and no channel of them has more."""
-    then = p.held_out.residuals(one.solution, unseen(one.solution, p.held_out))
+    give_back()
+    then = left_unseen(one.solution, p.held_out)
     now, before = (p.held_out.ratio(e, list(e)) for e in (then, after))
     if now > WORTH * before or _spoils(p.held_out, after, then):
         return None
