@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.floor.held_out import unseen
+from rig.analysis.tracing.floor.held_out import left_unseen, unseen
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.record import record
@@ -47,6 +47,9 @@ def test_stiffness_and_inertia_are_right_and_the_fast_runs_at_the_floor(tmp_path
     fast = {key: p.held_out.ratio(left, [key]) for key in left if "400" in p.eq.runs[key[0]].name}
     assert fast
     assert max(fast.values()) < 1.1, fast
+    run_by_run = left_unseen(p.baseline, p.held_out)
+    assert list(run_by_run) == list(left)
+    assert all(np.array_equal(run_by_run[key], left[key]) for key in left)
 
 
 @pytest.mark.slow
