@@ -31,17 +31,20 @@ LARGE: Final = 1.0  # floors of the motor's torque: less matters to nobody
 
 @dataclass(frozen=True)
 class UnevenFriction:
-    """By how much friction is more forward than backward, at the motor, and the 95 % half width of it [N·m]."""
+    """By how much friction is more forward than backward, at the motor, and the 95 % half width of it [N·m]; whether
+    faster runs have it too, or nobody knows."""
 
     size: float
     half: float
+    faster: bool
 
     def sentence(self) -> str:
         """What is said of it."""
         way = "forward" if self.size > 0 else "backward"
+        anywhere = ", whatever the speed," if self.faster else ""
         return (
             f"The motor needs {1e3 * abs(self.size):.3g} ± {1e3 * self.half:.2g} mN·m more torque {way} than the other "
-            "way, whatever the speed, while its torque reads zero at standstill: friction that is another one each "
+            f"way{anywhere} while its torque reads zero at standstill: friction that is another one each "
             "way. Every run has a zero of its own for that torque, so that no error shows it, and no effect of the "
             "library explains it."
         )
@@ -62,14 +65,15 @@ def uneven_friction(runs: Sequence[Recording], floor: float, torque_zero: float)
     pulled = float(np.mean([load for _, load in both])) - torque_zero / still[0].ratio
     if zero > STILL * abs(mean) or not abs(pulled) <= CARRIED * abs(mean):
         return None
-    if abs(mean) < max(LARGE * floor, ALIKE * error) or not _stays(runs, mean):
+    faster = _of_one_way_runs(runs)
+    if abs(mean) < max(LARGE * floor, ALIKE * error) or (faster is not None and faster / mean < STAYS):
         return None
-    return UnevenFriction(2.0 * mean, 2.0 * float(stdtrit(found.size - 1, 0.975)) * error)
+    return UnevenFriction(2.0 * mean, 2.0 * float(stdtrit(found.size - 1, 0.975)) * error, faster is not None)
 
 
-def _stays(runs: Sequence[Recording], mean: float) -> bool:
-    """Whether runs that turn one way each, where there are any forth and back as fast, have a fair part of that mean of
-    both ways [N·m] as well."""
+def _of_one_way_runs(runs: Sequence[Recording]) -> float | None:
+    """Torque of the motor in the mean of both ways [N·m], of runs that turn one way each, forth and back as fast; None
+    where there are no such."""
     turned = [(mean_speed(r), float(np.mean(_all(r, "tau_m")))) for r in runs if _turns_one_way(r)]
     pairs = [
         (forth + back) / 2
@@ -77,7 +81,7 @@ def _stays(runs: Sequence[Recording], mean: float) -> bool:
         for slow, back in turned
         if fast > 0 > slow and 1 / AS_FAST < -fast / slow < AS_FAST
     ]
-    return not pairs or float(np.mean(pairs)) / mean > STAYS
+    return float(np.mean(pairs)) if pairs else None
 
 
 def _turns_one_way(run: Recording) -> bool:
