@@ -88,6 +88,17 @@ def test_the_one_that_is_off_is_told_without_a_repeat(odd: Any, words: str) -> N
     assert words in said
 
 
+@pytest.mark.parametrize("weight", [-10.0, 10.0])
+def test_a_weight_in_another_unit_is_told_as_one_and_not_as_friction(weight: float) -> None:
+    odd = run(25.0, weight)
+    odd.pieces[0].tau_ext = 1000 * odd.pieces[0].tau_ext
+    shown = weight - F_CL
+    said = (
+        f"its manifest says that {1000 * weight:.3g} N·m hang on the output, its τ_l shows {shown:.3g} N·m: one of them"
+    )
+    assert odd_balances([*campaign(), odd]) == {odd.name: f"{said} is in another unit"}
+
+
 @pytest.mark.parametrize("channel", ["tau_m", "tau_l"])
 @pytest.mark.parametrize(("change", "words"), [(negated, "the other sign"), (in_mNm, "as if in another unit")])
 def test_a_lock_test_is_told_beside_others_of_any_travel(channel: str, change: Any, words: str) -> None:

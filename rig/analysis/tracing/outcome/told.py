@@ -14,12 +14,16 @@ PARAMETERS: Final = {  # symbol, what it is
     "K_under_load": ("K_L", "torsional stiffness at the largest torque there was"),
     "B_sp": ("B_sp", "damping of the flexspline"),
     "J_m": ("J_m", "inertia, motor side"),
-    "B_m": ("B_m", "viscous friction, motor side and mesh: B_m + B_ml, which no run tells apart"),
+    "B_m": ("B_m", "viscous friction, motor side and mesh: B_m + B_ml·(1 + σ/N), which no run tells apart"),
     "B_ml": ("B_ml", "viscous friction of the mesh"),
     "tau_c": ("τ_c", "constant friction, motor side"),
     "tau_0": ("τ_0", "zero of the motor torque"),
     "J_l": ("J_l", "inertia, load side"),
-    "B_l": ("B_l", "viscous friction, load side, less what the mesh gives back: B_l − (N − 1)·B_ml"),
+    "B_l": (
+        "B_l",
+        "viscous friction, load side, and what the mesh does to it: B_l + σ·(N + σ)·B_ml, σ = −1 where the mesh takes "
+        "the difference of both speeds, 1 where it takes their sum",
+    ),
     "tau_cl": ("τ_cl", "constant friction, load side"),
     "tau_l0": ("z", "zero of the torque sensor"),
     "gain": ("g", "share by which the motor torque reads more than the torque sensor"),

@@ -40,6 +40,7 @@ def odd_balances(runs: Sequence[Recording]) -> dict[str, str]:
 def _friction(runs: Sequence[Recording]) -> dict[str, str]:
     """Runs whose motor takes power from its friction, or gives it far more than the others do."""
     known = {run.name: taken for run in runs if "tau_m" in run.has and (taken := _taken(run)) is not None}
+    weighed = {run.name: said for run in runs if (said := _another_unit(run))}
     wrong: dict[str, str] = {}
     for name, taken in known.items():
         others = np.array([other for one, other in known.items() if one != name])
@@ -47,11 +48,27 @@ def _friction(runs: Sequence[Recording]) -> dict[str, str]:
         if usual <= 0.0 or float(np.mean(others > 0.0)) < MOST:
             continue
         said = f"what its τ_m puts into friction is {taken:.3g} N·m, that of other runs {usual:.3g} N·m"
-        if taken < -BELOW * usual:
+        if name in weighed and not -BELOW * usual <= taken <= UNIT * usual:
+            wrong[name] = weighed[name]
+        elif taken < -BELOW * usual:
             wrong[name] = f"{said}: it has the other sign than theirs, or what hangs on the output has"
         elif taken > UNIT * usual:
             wrong[name] = f"{said}, as if in another unit"
     return wrong
+
+
+def _another_unit(run: Recording) -> str:
+    """What is said of a weight that is many times what the shaft torque shows, or a small part of it; "" of others."""
+    if not run.load_stated or "tau_l" not in run.has:
+        return ""
+    weight = float(run.pieces[0].tau_ext[0])
+    shown = -float(np.nanmean(np.concatenate([piece.tau_l for piece in run.pieces])))
+    if abs(weight) < WEIGHT or abs(shown) < WEIGHT or 1 / UNIT < abs(weight / shown) < UNIT:
+        return ""
+    return (
+        f"its manifest says that {weight:.3g} N·m hang on the output, its τ_l shows {shown:.3g} N·m: one of them is in "
+        "another unit"
+    )
 
 
 def _taken(run: Recording) -> float | None:
