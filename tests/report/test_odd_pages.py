@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from rig.analysis.findings.result import Verdict
+from rig.analysis.findings.result import Check, Verdict
 from rig.report.page import render, write
 from rig.report.record import write_result
 from tests.report.made_up import EVENTS, TIMING, manifest, result
@@ -92,3 +92,16 @@ def test_rows_of_the_proof_and_the_loop_show_their_units() -> None:
     assert "0.500 ± 0.040 N·m" in text
     assert "1000 Hz" in text
     assert "shaft_torque_error" not in text
+
+
+@pytest.mark.parametrize(
+    ("failed", "said"),
+    [
+        (("limit_peak_to_peak",), "1 of 3 conditions was not met, a limit alone: no reason to doubt the figures."),
+        (("limit_peak_to_peak", "speed"), "2 of 3 conditions were not met: read the figures with that in mind."),
+    ],
+)
+def test_a_limit_that_is_not_kept_casts_no_doubt_on_the_figures(failed: tuple[str, ...], said: str) -> None:
+    names = ("whole_turns", "speed", "limit_peak_to_peak")
+    checks = tuple(Check(name, name not in failed, "12 of 13.") for name in names)
+    assert said in page(replace(PLAIN, verdict=Verdict.FAIL, checks=checks))
