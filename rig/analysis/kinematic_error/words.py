@@ -230,8 +230,8 @@ def add_limits_of_the_run(found: Findings, ke: KinematicError, ratio: float, out
     longest = max(s.mean.size for s in ke.strokes)
     if longest < ratio / 2:
         tell(
-            f"The longest stroke has {longest} whole turn{'' if longest == 1 else 's'}: order {_two(ratio, output)} need "
-            f"{ratio / 2:.0f} in one direction to be told apart."
+            f"The longest stroke has {longest} whole turn{'' if longest == 1 else 's'}: order {_two(ratio, output)} "
+            f"need {ratio / 2:.0f} in one direction to be told apart."
         )
     if ke.trend.covered_deg < 360.0:
         tell(
