@@ -39,25 +39,23 @@ def odd_balances(runs: Sequence[Recording]) -> dict[str, str]:
 
 def _friction(runs: Sequence[Recording]) -> dict[str, str]:
     """Runs whose motor takes power from its friction, or gives it far more than the others do."""
-    known = {run.name: taken for run in runs if "tau_m" in run.has and (taken := _taken(run)) is not None}
-    weighed = {run.name: said for run in runs if (said := _another_unit(run))}
+    known = [(run, taken) for run in runs if "tau_m" in run.has and (taken := _taken(run)) is not None]
     wrong: dict[str, str] = {}
-    for name, taken in known.items():
-        others = np.array([other for one, other in known.items() if one != name])
+    for run, taken in known:
+        others = np.array([other for one, other in known if one is not run])
         usual = float(np.median(others)) if others.size >= FEWEST else 0.0
         if usual <= 0.0 or float(np.mean(others > 0.0)) < MOST:
             continue
         said = f"what its τ_m puts into friction is {taken:.3g} N·m, that of other runs {usual:.3g} N·m"
-        if name in weighed and not -BELOW * usual <= taken <= UNIT * usual:
-            wrong[name] = weighed[name]
-        elif taken < -BELOW * usual:
-            wrong[name] = f"{said}: it has the other sign than theirs, or what hangs on the output has"
+        if taken < -BELOW * usual:
+            sign = f"{said}: it has the other sign than theirs, or what hangs on the output has"
+            wrong[run.name] = _weight_in_another_unit(run) or sign
         elif taken > UNIT * usual:
-            wrong[name] = f"{said}, as if in another unit"
+            wrong[run.name] = _weight_in_another_unit(run) or f"{said}, as if in another unit"
     return wrong
 
 
-def _another_unit(run: Recording) -> str:
+def _weight_in_another_unit(run: Recording) -> str:
     """What is said of a weight that is many times what the shaft torque shows, or a small part of it; "" of others."""
     if not run.load_stated or "tau_l" not in run.has:
         return ""
