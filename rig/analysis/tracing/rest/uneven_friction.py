@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 from scipy.special import stdtrit
 
+from rig.analysis.tracing.runs.alike import ONE_WAY
 from rig.analysis.tracing.runs.recording import Recording, mean_speed, mean_way
 
 RUNS: Final = 2  # that turn both ways
@@ -23,7 +24,6 @@ EACH_WAY: Final = 0.2  # of the rows, at least
 STILL: Final = 0.2  # of what is seen: a zero that is as much may be all of it
 CARRIED: Final = 0.5  # of what is seen, at the motor: what the load pulls one way
 ALIKE: Final = 5.0  # standard errors
-ONE_WAY: Final = 0.9  # of the rows
 AS_FAST: Final = 1.1  # times: speeds forth and back that make a pair
 STAYS: Final = 0.5  # of what is seen slowly: what is left of it faster, else it goes away with the speed
 LARGE: Final = 1.0  # floors of the motor's torque: less matters to nobody
