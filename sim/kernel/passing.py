@@ -102,7 +102,8 @@ def passing(
     slow = Slow(state[at.LOAD_SEEN], state[at.CREEP_1], state[at.CREEP_2])
     found = substeps(state, slow, p, dt, tau, tau_ext, locked, (xi_m, xi_l))
     if found[0] != at.FINE:
-        state[:] = before
+        for i in range(state.size):  # of a slice numba compiles for four seconds what would be said if it did not fit
+            state[i] = before[i]
     elif dt > 0.0:
         heat(state, p, motor_heat(state) - lost, dt)
     return found

@@ -145,7 +145,8 @@ def _march(state: Array, p: Array, a: Array, b: Array, t: Array, tau: Array, lon
     for i in range(t.size):
         lever = 1.0 / p[N] - slope
         net = _net(w, phi, v, lever, tau[i], p)
-        out[:, i] = np.array((theta, w, phi, v, net[2], work, lost))
+        out[0, i], out[1, i], out[2, i], out[3, i] = theta, w, phi, v
+        out[4, i], out[5, i], out[6, i] = net[2], work, lost
         if i == t.size - 1:
             break
         steps = max(int(math.ceil((t[i + 1] - t[i]) / longest - 1e-9)), 1)  # noqa: RUF046 - numba's ceil is a float

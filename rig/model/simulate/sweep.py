@@ -233,12 +233,19 @@ def _rate(longest: float, angle: float, z: Array) -> float:
     return fastest
 
 
+@njit(cache=True)
+def _keep(z: Array, k: int, out: Array) -> None:
+    """The states of a block as column `k`; value by value, which compiles in a fraction of the time of a slice."""
+    for i in range(4 * LANES):
+        out[i, k] = z[i]
+
+
 @njit(cache=True, parallel=True, error_model="numpy")
 def _sweep(blocks: Array, t: Array, tau: Array, tau_ext: float, longest: float, angle: float, out: Array) -> None:
     """Block by block, each on one core: `out` (blocks, 4·LANES, n). `longest` s a substep, `angle` rad in it."""
     for block in prange(blocks.shape[0]):
         z = blocks[block].copy()
-        out[block, :, 0] = z[: 4 * LANES]
+        _keep(z, 0, out[block])
         for k in range(t.size - 1):
             left = t[k + 1] - t[k]
             while left > 0.0:
@@ -246,4 +253,4 @@ def _sweep(blocks: Array, t: Array, tau: Array, tau_ext: float, longest: float, 
                 h = left / count
                 _substep(h, 2.0 * angle / h, tau[k], tau_ext, z)
                 left = 0.0 if count <= 1 else left - h
-            out[block, :, k + 1] = z[: 4 * LANES]
+            _keep(z, k + 1, out[block])
