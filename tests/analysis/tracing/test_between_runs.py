@@ -56,18 +56,55 @@ def test_every_run_from_the_step_on_has_a_zero_of_its_own(
     between = found(monkeypatch, stepped(rng))
     assert between
     assert between.runs == tuple(range(AT, RUNS))
-    assert between.size == pytest.approx(STEP, abs=2 * between.half_width)
-    assert between.half_width < 0.05 * STEP
+    assert between.sizes == pytest.approx([STEP], abs=2 * between.half_widths[0])
+    assert between.half_widths[0] < 0.05 * STEP
     named: Any = SimpleNamespace(runs=[SimpleNamespace(name=f"run {i}") for i in range(RUNS)])
-    assert "between the runs run 8 and run 9" in between.sentence(named)
+    assert "step once, between the runs run 8 and run 9, while" in between.sentence(named)
     eq: Any = SimpleNamespace(rows={(i, "A"): SimpleNamespace(y=np.zeros(7)) for i in range(RUNS)})
     assert {key: x.tolist() for key, x in between.columns(eq).items()}[AT, "A"] == [[1.0]] * 7
 
 
 def test_the_interval_of_its_size_covers(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator) -> None:
-    hits = [abs(b.size - STEP) < b.half_width for _ in range(200) if (b := found(monkeypatch, stepped(rng)))]
+    hits = [abs(b.sizes[0] - STEP) < b.half_widths[0] for _ in range(200) if (b := found(monkeypatch, stepped(rng)))]
     assert len(hits) == 200
     assert 0.88 <= np.mean(hits) <= 0.99
+
+
+def several(rng: np.random.Generator, *levels: float) -> np.ndarray:
+    """Zeros that wander a little about one level after the other, in steps of STEP."""
+    return WANDER * rng.standard_normal(RUNS) + STEP * np.repeat(levels, -(-RUNS // len(levels)))[:RUNS]
+
+
+def test_counts_are_lost_three_times_and_every_level_is_told_from_the_others(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    between = found(monkeypatch, several(rng, 0.0, 1.0, 3.0, 2.0))
+    assert between
+    assert between.levels == tuple(tuple(range(at, at + 5)) for at in range(0, RUNS, 5))
+    assert between.sizes == pytest.approx([STEP, 2 * STEP, -STEP], abs=3 * between.half_widths.max())
+    words = {p.name: p.value for p in between.parameters()}
+    assert words == {"steps": 3.0, "step_theta_l": pytest.approx(2 * STEP, rel=0.1)}
+    named: Any = SimpleNamespace(runs=[SimpleNamespace(name=f"run {i}") for i in range(RUNS)])
+    assert "three times, between the runs run 4 and run 5, between the runs run 9 and run 10 and" in between.sentence(
+        named
+    )
+    eq: Any = SimpleNamespace(rows={(i, "A"): SimpleNamespace(y=np.zeros(7)) for i in range(RUNS)})
+    columns = between.columns(eq)
+    assert columns.keys() == {(i, "A") for i in range(5, RUNS)}
+    assert len({float(columns[i, "A"][0, 0]) for i in (5, 10, 15)}) == 3
+
+
+def test_a_zero_that_comes_back_was_never_lost(monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator) -> None:
+    for levels in ((0.0, 1.0, 0.0), (0.0, 1.0, 0.0, 1.0), (0.0, 1.0, 2.0, 1.0)):
+        assert not any(found(monkeypatch, several(rng, *levels)) for _ in range(20))
+
+
+def test_levels_with_no_condition_in_common_may_be_the_conditions(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    zeros = several(rng, 0.0, 1.0, 3.0, 2.0)
+    assert found(monkeypatch, zeros, conditions=10) is None, "the first is like the third, the second like the fourth"
+    assert found(monkeypatch, zeros, conditions=7), "all hang together"
 
 
 def test_zeros_that_wander_or_drift_or_warm_up_are_no_step(
@@ -77,6 +114,7 @@ def test_zeros_that_wander_or_drift_or_warm_up_are_no_step(
     for zeros in (0.0 * t, STEP * t / RUNS, STEP * (1 - np.exp(-t / 4.0)), STEP * np.sign(np.sin(t))):
         assert not any(found(monkeypatch, zeros + WANDER * rng.standard_normal(RUNS)) for _ in range(20))
     assert not any(found(monkeypatch, stepped(rng, 3 * WANDER)) for _ in range(20))
+    assert sum(found(monkeypatch, np.cumsum(WANDER * rng.standard_normal(RUNS))) is not None for _ in range(300)) <= 2
 
 
 def test_after_a_longer_break_somebody_may_have_homed_the_encoder(

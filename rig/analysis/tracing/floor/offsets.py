@@ -64,7 +64,8 @@ def of_the_torque_sensor(s: Solution, runs: Sequence[int]) -> bool:
 
 
 def _on_one_side(s: Solution, a: int, b: int) -> bool:
-    """Whether both runs, or neither, have a zero of their own in A: a step between them is in their difference."""
+    """Whether both runs, or neither, have a zero of their own in A, of the same level: a step between them is in their
+    difference."""
     columns = (s.design.eq.own.get((run, "A"), np.zeros((1, 0))) for run in (a, b))
-    first, second = (bool((np.ptp(x, axis=0) == 0).any()) for x in columns)
-    return first is second
+    first, second = (x[0, np.ptp(x, axis=0) == 0].tolist() for x in columns)
+    return bool(first == second)
