@@ -2,6 +2,7 @@
 PYTHON ?= python3
 UV ?= uv
 BIN := .venv/bin
+PIP_INSTALL := $(BIN)/python -m pip install --quiet --no-compile --no-deps --require-hashes
 # Packages with compiled loops keep their cache beside the code; one BLAS thread: the matrices here are small.
 export OPENBLAS_NUM_THREADS := 1
 unexport PYTHONDONTWRITEBYTECODE
@@ -50,20 +51,22 @@ install: .venv/ready
 	$(PYTHON) -m venv .venv
 
 .venv/ready: .lock/run.txt pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --require-hashes -r .lock/run.txt
+	$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r .lock/run.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	$(BIN)/python -m compileall -q rig drivers sim
 	touch $@
 
-# test.txt holds all of run.txt: on a fresh clone one installation, half a minute less than one after the other
-.venv/ready-dev: .lock/run.txt .lock/test.txt pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --no-compile --require-hashes -r .lock/test.txt
+# the product's packages and those of the tests at a time: none is in both files, and each takes half a minute of a core
+.venv/ready-dev: .lock/run.txt .lock/dev.txt pyproject.toml | .venv/bin/python
+	$(PIP_INSTALL) -r .lock/run.txt & run=$$!; $(PIP_INSTALL) -r .lock/dev.txt; dev=$$?; wait $$run && exit $$dev
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	touch .venv/ready $@
 
 lock:  ## renew the pinned versions (needs uv)
 	$(UV) pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q pyproject.toml .lock/build.in -o .lock/run.txt
-	$(UV) pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q --extra dev pyproject.toml .lock/build.in -c .lock/run.txt -o .lock/test.txt
+	$(UV) pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-emit-index-url --no-annotate -q --extra dev pyproject.toml .lock/build.in -c .lock/run.txt -o .lock/all.txt
+	awk 'NR == FNR { seen[$$1]; next } /^[^ ]/ { new = !($$1 in seen) } new' .lock/run.txt .lock/all.txt >.lock/dev.txt
+	rm .lock/all.txt
 
 clean:
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
