@@ -16,6 +16,7 @@ from hypothesis import settings
 
 import rig.core.can_libraries  # noqa: F401  # before a test imports python-can: with all it brings it takes 1.6 s more
 from rig.process.realtime import RealTime
+from rig.report import page
 from tests.chromium import ARGUMENTS, SIZE
 
 if TYPE_CHECKING:
@@ -66,6 +67,12 @@ def context(browser: Browser) -> Iterator[BrowserContext]:
     made = browser.new_context(viewport=SIZE)
     yield made
     made.close()
+
+
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages of runs have no figures: nine tenths of what a short run's analysis takes, and many tests never look."""
+    monkeypatch.setattr(page, "_plots", lambda curves, mark: [])
 
 
 @pytest.fixture

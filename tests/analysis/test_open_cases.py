@@ -16,8 +16,8 @@ CASES = [f"open-{n}" for n in range(1, 7)]
 LOADED = "open-2"  # its error shrinks under the load of its own friction: not what the truth's table lists
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", [CASES[0], *(pytest.param(c, marks=pytest.mark.long) for c in CASES[1:])])
+@pytest.mark.long
+@pytest.mark.parametrize("case", CASES)
 def test_every_run_of_a_campaign_has_figures_and_a_sentence(shared: Path, case: str) -> None:
     folders = sorted(p for p in (shared / "cases" / case).iterdir() if p.is_dir())
     assert len(folders) == 36

@@ -82,6 +82,7 @@ def test_a_run_that_was_renamed_is_found_by_its_uid(made: Made) -> None:
     assert read_journal(journal.folder).book["runs"][1]["run"] == "umbenannt Größe"
 
 
+@pytest.mark.long
 def test_a_lost_run_that_somebody_skips_leaves_the_campaign_incomplete(made: Made) -> None:
     journal, second, planned = made
     assert close_settled(journal) is Exit.PASS

@@ -175,6 +175,7 @@ def test_a_disk_that_fills_ends_the_campaign_as_it_ends_a_run(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_where_the_plan_says_so_a_person_clears_the_fault_and_the_campaign_goes_on(tmp_path: Path) -> None:
     exit, journal, _ = make(tmp_path, campaign(REST, REST, head=GO_ON), trip_at=1)
     assert (exit, journal.book["status"]) == (Exit.TRIPPED, "failed")
@@ -245,6 +246,7 @@ def test_a_note_of_the_campaign_stands_in_every_run_and_check_also_of_a_later_se
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_run_whose_analysis_was_killed_is_analysed_before_anything_moves(tmp_path: Path) -> None:
     planned = campaign(REST, REST)
     _, journal, _ = make(tmp_path, planned, stop_at=2)

@@ -28,6 +28,7 @@ def in_fault(rig: Wired) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_doctor_says_so_of_every_device_and_of_the_bench(rig: Wired, capsys: pytest.CaptureFixture[str]) -> None:
     main(["doctor", "--bench", "twin-can"])
     said = capsys.readouterr().out

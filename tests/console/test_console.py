@@ -17,7 +17,7 @@ from rig.runfile.manifest import read
 from tests.console.hand import FOREVER, SHORT, Hand
 from tests.some import some
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("console")]  # one station for all of them
 
 
 @pytest.fixture
@@ -326,6 +326,7 @@ def test_a_trip_is_told_in_words_and_left_only_by_a_reset(hand: Hand) -> None:
     assert hand.finish("reset")["state"] == "connected"
 
 
+@pytest.mark.long
 def test_the_doctor_is_heard_with_and_without_a_bench(hand: Hand) -> None:
     names = [c["name"] for c in hand.finish("check", bench="twin")["checks"]]
     assert "disk" in names

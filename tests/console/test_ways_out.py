@@ -163,6 +163,7 @@ def test_a_port_that_is_taken_is_a_sentence(served: Served) -> None:
     assert f"nothing can listen at 127.0.0.1, port {port}" in said.stderr
 
 
+@pytest.mark.long
 def test_an_address_that_others_reach_says_where_tls_ends(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "rig.cli", "serve", "--host", "0.0.0.0", "--port", "0", "--out", str(tmp_path)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)

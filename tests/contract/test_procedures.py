@@ -108,7 +108,9 @@ def test_every_sweep_is_followed_by_what_it_is_for() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.long) if n == "speed-convergence" else n for n in CATALOGUE]
+)
 def test_it_completes_on_the_twin_within_what_it_announced(name: str) -> None:
     ending, sink, procedure = run(name)
     assert ending.status == "completed", ending

@@ -8,6 +8,7 @@ import sys
 import pytest
 
 
+@pytest.mark.long
 def test_a_file_format_of_python_can_is_not_imported_with_it_and_is_there_for_who_wants_it() -> None:
     pytest.importorskip("asammdf")
     code = (

@@ -37,7 +37,7 @@ from sim.wire.states402 import DriveState
 from tests.drivers.puppet import PuppetClock
 from tests.fakes import ListSink
 
-SUITE = "18"
+SUITE = "9"
 EXAMPLES, STEPS = int(os.environ.get("HDRIG_FUZZ", SUITE)), 100
 BENCH = read("twin-canopen", ["limits.stale_s=0.005"])
 TWIN = twin_parameters(read("twin").file)

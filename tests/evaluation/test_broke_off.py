@@ -15,6 +15,8 @@ from rig.evaluation.traceback_file import NAME, broke_off
 from rig.runfile.run import Run
 from tests.commands.made_run import made_run
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 
 def stumble(monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
     """The analysis of slow and friction runs raises `error` from now on."""

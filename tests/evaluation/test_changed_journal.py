@@ -11,6 +11,8 @@ from rig.runfile import manifest
 from rig.runfile.finalise import finalise
 from tests.runfile.rows import new_folder, write_journal
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 
 @pytest.mark.slow
 def test_a_shortened_journal_is_named_with_the_rows_that_are_gone_and_meets_no_limit(tmp_path: Path) -> None:

@@ -9,6 +9,8 @@ import pytest
 
 from rig.evaluation.identification import made_with
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 FIRST, LAST = "2026-11-16T06:00:00+00:00", "2026-11-18T06:00:00+00:00"
 
 

@@ -13,6 +13,8 @@ from rig.commands.limits import limits_of
 from rig.evaluation.run import analyse_folder
 from tests.commands.made_run import made_run
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 NAME = "kinematic_error_peak_to_peak"
 
 

@@ -14,6 +14,8 @@ from rig.evaluation.to_identify import open_runs, opened
 from rig.runfile.run import Run
 from tests.commands.made_run import made_run, rows
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 
 def test_a_run_that_cannot_be_opened_is_left_out_in_words(tmp_path: Path) -> None:
     good, bad = made_run(tmp_path / "good"), made_run(tmp_path / "bad", {"gear": {"ratio": "fifty"}})

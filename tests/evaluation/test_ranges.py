@@ -16,6 +16,8 @@ from rig.evaluation.ranges import beyond_ranges
 from rig.evaluation.run import analyse_folder
 from tests.commands.made_run import made_run, rows
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 BENCH = """
 [motor]
 torque_limit = { value = 5.0, unit = "N·m", from = "assumed" }

@@ -23,7 +23,7 @@ KEYS = (
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("key", some(KEYS, 5))
+@pytest.mark.parametrize("key", some(KEYS, 3))
 def test_a_campaign_with_one_odd_key_is_read_or_refused_in_a_sentence(key: str, tmp_path: Path) -> None:
     table, _, name = key.rpartition(".")
     good = made_run(tmp_path / "good")

@@ -68,7 +68,7 @@ def test_a_run_whose_stderr_is_closed_runs_and_its_number_is_no_files(tmp_path: 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
+@pytest.mark.parametrize("encoding", ["ascii", pytest.param("latin-1", marks=pytest.mark.long)])
 def test_what_a_terminal_cannot_show_is_told_in_other_letters_and_no_line_is_lost(encoding: str) -> None:
     args = [sys.executable, "-c", TEN, "run", "standstill", "--dry-run"]
     shown = {

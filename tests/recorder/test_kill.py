@@ -135,7 +135,7 @@ def test_a_kill_loses_no_row_that_was_handed_over(way: Callable[[Program], float
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kills", KILLS)
-@pytest.mark.parametrize("way", some(WAYS, 2))
+@pytest.mark.parametrize("way", some(WAYS, 1))
 def test_kills_at_random_moments_lose_no_row_that_was_handed_over(
     way: Callable[[Program], float], kills: int, tmp_path: Path
 ) -> None:

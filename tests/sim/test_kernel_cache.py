@@ -35,6 +35,7 @@ def ask(root: Path) -> tuple[float, int]:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_change_in_a_file_that_is_only_called_is_never_missed(tmp_path: Path) -> None:
     assert sim.__file__ is not None
     shutil.copytree(Path(sim.__file__).parent, tmp_path / "sim", ignore=shutil.ignore_patterns("__pycache__"))

@@ -31,7 +31,9 @@ def inside(seed: int, **conditions: Any) -> tuple[np.ndarray, bool]:
     ("conditions", "seeds"),
     [
         pytest.param({}, 16, id="as on the rig"),
-        pytest.param({"rate": 250.0, "counts_m": 65_536, "counts_l": 1_296_000}, 16, id="4 ms rows"),
+        pytest.param(
+            {"rate": 250.0, "counts_m": 65_536, "counts_l": 1_296_000}, 16, id="4 ms rows", marks=pytest.mark.long
+        ),
         pytest.param({"cycles": 1}, 24, id="one cycle, six revolutions forward", marks=pytest.mark.long),
         pytest.param({"trend_arcsec": 60.0}, 24, id="eccentric output", marks=pytest.mark.long),
         pytest.param({"wander_s": 3.0, "wander_arcsec": 0.6}, 24, id="slow friction", marks=pytest.mark.long),

@@ -59,7 +59,7 @@ def test_the_delay_of_a_low_pass_is_found_told_and_no_effect(tmp_path: Path, sha
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("changed", [early, lambda c, began: {}])
+@pytest.mark.parametrize("changed", [pytest.param(early, marks=pytest.mark.long), lambda c, began: {}])
 def test_a_load_angle_that_is_early_and_a_torque_that_is_not_late_are_left_as_they_are(
     changed: object, tmp_path: Path, shared: Path
 ) -> None:

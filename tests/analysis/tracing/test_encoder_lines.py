@@ -37,6 +37,7 @@ def _with_waves(p: Prepared, amplitude: float) -> Solution:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_line_count_that_no_manifest_says_is_found_to_the_line(clean: Prepared) -> None:
     runs = clean.split.fitted
     covered = reach([clean.eq.runs[i] for i in runs])

@@ -20,6 +20,7 @@ def test_a_clean_campaign_misses_nothing(shared: Path) -> None:
     assert found.ratios_before[AT_REVERSALS] < 1.1  # its floor is no repeats', but a bound
 
 
+@pytest.mark.long
 def test_a_late_load_encoder_is_named_with_its_delay(shared: Path) -> None:
     said = document(trace(shared / "cases" / "open-4"))
     assert said["verdict"]["effects"] == ["channel_time_skew"]

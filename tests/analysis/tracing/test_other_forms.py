@@ -174,6 +174,7 @@ def test_a_disc_on_a_hub_swings_as_the_torque_tells() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_flange_behind_the_torque_sensor_twists_its_shaft_and_lets_the_load_swing() -> None:
     """Flange and load of 0.08 and 0.9 kg·m² on a shaft of 2e4 N·m/rad, the flange turned by a torque that sweeps."""
     first, load, k, c = 0.08, 0.9, 2e4, 2.0

@@ -91,6 +91,7 @@ def test_balls_of_the_wave_generators_bearing_are_an_order_and_no_resonance(tmp_
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_mount_that_warms_is_neither_a_late_reading_nor_an_order_beyond_the_rows(tmp_path: Path) -> None:
     found = bench(tmp_path, lambda motor, t: 12 * (1 - np.exp(-t / 60)), speeds=(60.0,))
     assert "channel_time_skew" not in found.verdict.effects

@@ -148,6 +148,7 @@ def test_where_nothing_stands_out_of_the_floor_the_channel_is_taken_that_can_be_
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_torque_of_the_motor_that_is_alike_both_ways_at_a_speed_is_what_one_way_has_more() -> None:
     """Friction turns with the way, what the baseline's own friction leaves of one way alone does not."""
     rng = np.random.default_rng(6)

@@ -31,6 +31,7 @@ def terminal(tmp_path: Path) -> Iterator[Terminal]:
         found.close()
 
 
+@pytest.mark.long
 def test_what_a_procedure_found_is_said_once(tmp_path: Path) -> None:
     command = [*HDRIG, "run", "step-test", "--clock", "virtual", "--out", str(tmp_path)]
     made = subprocess.run(command, capture_output=True, text=True, timeout=100)
@@ -38,6 +39,7 @@ def test_what_a_procedure_found_is_said_once(tmp_path: Path) -> None:
     assert "inertia at the motor" not in made.stderr
 
 
+@pytest.mark.long
 def test_hold_then_stop_by_key(terminal: Terminal) -> None:
     terminal.press("h")
     terminal.wait_for(lambda seen: "HOLDING kinematic-error" in seen)
