@@ -15,6 +15,12 @@ def _noise(rng: np.random.Generator, n: int, sigma: float) -> np.ndarray:
     return sigma * rng.standard_normal(n)
 
 
+def alone(channel: str, theta: np.ndarray, locked: bool = False, count: float = 0.0) -> Any:
+    """Equations of one run alone, whose encoder of the load has that count [rad]."""
+    run = SimpleNamespace(locked=locked, ratio=50.0, step_m=0.0, step_l=count)
+    return SimpleNamespace(rows={(0, channel): SimpleNamespace(theta_m=theta)}, runs=[run])
+
+
 def test_what_repeats_at_equal_angle_is_no_noise(rng: np.random.Generator) -> None:
     a, b = np.linspace(0, 60, 6000), np.linspace(0.3, 61, 5900)  # the second one turns a little slower
     d = compare(a, np.sin(a) + _noise(rng, a.size, 0.1), b, np.sin(b) + _noise(rng, b.size, 0.1))
@@ -26,12 +32,30 @@ def test_a_high_order_that_every_turn_repeats_is_no_noise_of_a_fast_run(rng: np.
     a, b = np.linspace(0, 450, 1220), np.linspace(0.3, 452, 1220)
     wave = [2.0 * np.sin(13 * x) + np.cos(9 * x) + _noise(rng, x.size, 0.1) for x in (a, b)]
     assert np.sqrt(np.mean(compare(a, wave[0], b, wave[1]) ** 2)) == pytest.approx(0.1, rel=0.1)
-    eq: Any = SimpleNamespace(rows={(0, "A"): SimpleNamespace(theta_m=a)})
+    eq = alone("A", a)
     found = turn_by_turn(eq, {(0, "A"): wave[0]}, (0, "A"))
     assert found is not None
     assert found.rms == pytest.approx(0.1, rel=0.1)
     swells = [(1.0 + x / 450) * np.sin(2 * x) + _noise(rng, x.size, 0.1) for x in (a, b + 225)]
     assert np.sqrt(np.mean(compare(a, swells[0], b, swells[1]) ** 2)) > 0.2  # what differs between turns is
+
+
+@pytest.mark.parametrize("locked", [False, True])
+def test_an_error_of_no_angle_is_no_noise_of_a_run_alone_unless_nothing_turns(
+    locked: bool, rng: np.random.Generator
+) -> None:
+    """A beat of two clocks, 4.6 times in a run: no two turns have the same of it, and no sensor's noise is like that. Of
+    a locked run nobody knows what repeats, of a torque it may be friction that wanders, of few counts their beat."""
+    theta, t = np.linspace(0, 450, 1200), np.linspace(0, 8, 1200)
+    e = 2.0 * (0.573 * t % 1.0 - 0.5) + _noise(rng, t.size, 0.02)
+    made = {
+        "sensors": turn_by_turn(alone("A", theta, locked), {(0, "A"): e}, (0, "A")),
+        "coarse": turn_by_turn(alone("A", theta, locked, count=1.0), {(0, "A"): e}, (0, "A")),
+        "torque": turn_by_turn(alone("M", theta, locked), {(0, "M"): e}, (0, "M")),
+    }
+    rms = {name: found.rms for name, found in made.items() if found}
+    assert rms["torque"] == rms["coarse"] > 0.25
+    assert rms["sensors"] == (rms["torque"] if locked else pytest.approx(6 * 0.02, rel=0.15))
 
 
 def test_strokes_are_compared_with_strokes_of_their_own_direction(rng: np.random.Generator) -> None:
@@ -47,7 +71,7 @@ def test_one_cycle_about_where_it_began_is_compared_turn_by_turn(rng: np.random.
     """Up, down past the start, up to it again: the two ways up share no angle."""
     theta = np.concatenate([np.linspace(0, 25, 3000), np.linspace(25, -25, 6000), np.linspace(-25, 0, 3000)])
     e = np.sin(2 * theta) + _noise(rng, theta.size, 0.1)
-    eq: Any = SimpleNamespace(rows={(0, "M"): SimpleNamespace(theta_m=theta)})
+    eq = alone("M", theta)
     assert neighbours(eq, {(0, "M"): e}, (0, "M")) is None
     found = turn_by_turn(eq, {(0, "M"): e}, (0, "M"))
     assert found is not None
