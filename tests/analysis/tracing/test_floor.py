@@ -44,7 +44,7 @@ def test_a_high_order_that_every_turn_repeats_is_no_noise_of_a_fast_run(rng: np.
 def test_an_error_of_no_angle_is_no_noise_of_a_run_alone_unless_nothing_turns(
     locked: bool, rng: np.random.Generator
 ) -> None:
-    """A beat of two clocks, 4.6 times in a run: no two turns have the same of it, and no sensor's noise is like that. Of
+    """A beat of two clocks, 4.6 times in a run: no two turns have the same of it, and no sensor is as noisy. Of
     a locked run nobody knows what repeats, of a torque it may be friction that wanders, of few counts their beat."""
     theta, t = np.linspace(0, 450, 1200), np.linspace(0, 8, 1200)
     e = 2.0 * (0.573 * t % 1.0 - 0.5) + _noise(rng, t.size, 0.02)

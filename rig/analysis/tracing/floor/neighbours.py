@@ -56,7 +56,7 @@ def _scatter(eq: Equations, key: Key, made: Sequence[Array]) -> Scatter | None:
 def roughness(d: Array) -> float:
     """RMS of white noise that would make the rows of `d` (n,) as rough as half of them are: a jump, or what goes
     slowly, adds nothing."""
-    return float(np.median(np.abs(np.diff(d, 4)))) / 0.6745 / 70**0.5
+    return float(np.median(np.abs(np.diff(d, 4))) / 0.6745 / np.sqrt(70))
 
 
 def against_both(theta: Array, e: Array) -> Array:
