@@ -37,10 +37,11 @@ def found(
     known = {"A": zeros} if of_the_torque is None else {"A": zeros, "L": of_the_torque}
     rows = {(i, channel): SimpleNamespace(y=np.zeros(50)) for i in range(len(zeros)) for channel in known}
     s: Any = SimpleNamespace(
-        design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows)), value=lambda name: {"compliance": SOFT}[name]
+        design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows), terms=()),
+        value=lambda name: {"compliance": SOFT}[name],
     )
-    for where in (module, offsets):
-        monkeypatch.setattr(where, "offset", lambda _, run, channel: known[channel][run])
+    for where, name in ((module, "zero"), (offsets, "offset")):
+        monkeypatch.setattr(where, name, lambda _, run, channel: known[channel][run])
     monkeypatch.setattr(module, "alike", lambda a, b: a.said == b.said)
     return find_between(s, range(len(zeros)))
 

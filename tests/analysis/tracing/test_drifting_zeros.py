@@ -47,11 +47,12 @@ def found(
     ]
     rows = {(i, c) for i in range(RUNS) for c in ("A" if of_the_torque is None else "AL")}
     s: Any = SimpleNamespace(
-        design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows)), value=lambda name: {"compliance": SOFT}[name]
+        design=SimpleNamespace(eq=SimpleNamespace(runs=runs, rows=rows), terms=()),
+        value=lambda name: {"compliance": SOFT}[name],
     )
     known = {"A": zeros, "L": of_the_torque or ()}
-    for where in (module, offsets):
-        monkeypatch.setattr(where, "offset", lambda _, run, channel: known[channel][run])
+    for where, name in ((module, "zero"), (offsets, "offset")):
+        monkeypatch.setattr(where, name, lambda _, run, channel: known[channel][run])
     unseen = range(1, RUNS, 3)
     return drifting_zeros(s, [i for i in range(RUNS) if i not in unseen], unseen)
 

@@ -10,7 +10,8 @@ import pytest
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import design, fit
-from rig.analysis.tracing.floor.homed import about_a_line, of_effects
+from rig.analysis.tracing.floor.homed import about_a_line
+from rig.analysis.tracing.floor.offsets import of_effects
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.trace import trace
@@ -37,6 +38,6 @@ def test_zeros_that_follow_no_speed_are_every_runs_own(shared: Path) -> None:
     # a wave in the motor angle shifts a run that goes a part of a turn, and hardly one that goes round
     s = fit(design(p.eq, (Term(LIBRARY["motor_encoder_eccentricity"], ()),), p.split.fitted))
     s.x[s.design.place(0)] = 1e-3  # rad
-    by = {p.eq.runs[i].name: abs(of_effects(s, i)) for i, c in s.keys if c == "A"}
+    by = {p.eq.runs[i].name: abs(of_effects(s, i, "A")) for i, c in s.keys if c == "A"}
     assert max(x for name, x in by.items() if name.startswith("speed")) < 2e-6
     assert by["lock_20_1"] > 5e-5

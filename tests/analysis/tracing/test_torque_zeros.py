@@ -24,7 +24,8 @@ CREEP = 0.1 * np.array([-0.5, -0.7, -0.1, -0.5, -1.6, -1.3, -0.6, 1.2])  # N·m
 def solution(monkeypatch: pytest.MonkeyPatch, creep: np.ndarray) -> Any:
     """Of eight runs whose load angle is read late, and whose torque sensor has another zero in each."""
     zeros = {"A": LATE * SPEEDS / RATIO - SOFT * creep, "L": creep}
-    monkeypatch.setattr(homed, "offset", lambda s, run, channel: zeros[channel][run])
+    for name in ("offset", "zero"):
+        monkeypatch.setattr(homed, name, lambda s, run, channel: zeros[channel][run])
     pieces = [[SimpleNamespace(omega_m=np.full(9, w))] for w in SPEEDS]
     runs = [
         SimpleNamespace(locked=False, has=MEASURED, ratio=RATIO, pieces=p, name=f"run {i}")
@@ -84,5 +85,5 @@ def test_a_line_that_is_little_beside_what_was_taken_off_is_the_balance_of_the_l
     s = solution(monkeypatch, tared)
     drag = 0.1 * 0.35 * SPEEDS / 50.0
     monkeypatch.setattr(homed, "torque_zero", lambda s, run: float(tared[run] + drag[run]))
-    monkeypatch.setattr(homed, "offset", lambda s, run, channel: float(-SOFT * tared[run]))
+    monkeypatch.setattr(homed, "zero", lambda s, run, channel: float(-SOFT * tared[run]))
     assert about_a_line(s) is None

@@ -1,6 +1,7 @@
 """Where a rest lives: the coordinate it was made with is found, whatever else changes beside it."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -131,6 +132,21 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
 def said(at: At, e: np.ndarray, channel: str = "A") -> str:
     """The coordinate of a rest (n,) over its floor."""
     return plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), channel))[0].coordinate
+
+
+@pytest.mark.slow
+def test_waves_of_the_motor_s_torque_as_large_as_its_speed_squared_are_of_its_angle() -> None:
+    """An angle that is read wrong has no size of its own in a torque (exam 94, case 16); what grows otherwise has."""
+    rng = np.random.default_rng(9)
+    at = coordinates(rng)
+    noise, waves = rng.normal(0, 1, RUNS * ROWS), 9.0 * np.cos(2 * at["motor_angle"] + 0.3)
+    e = (at["speed"] / 30.0) ** 2 * waves + noise
+    assert said(at, e, "M") == "motor_angle"
+    r = Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE)
+    h = Halves(r, folds(r))
+    assert [home.coordinate for home in unknown._read_wrong(h, 1.0)] == ["motor_angle"]
+    grown = Halves(replace(r, e=np.sqrt(np.abs(at["speed"])) / 5.0 * waves + noise), folds(r))
+    assert unknown._read_wrong(grown, 1.0) == []
 
 
 def test_where_nothing_stands_out_of_the_floor_the_channel_is_taken_that_can_be_foretold(

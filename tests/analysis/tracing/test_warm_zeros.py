@@ -50,7 +50,7 @@ def found(
     eq = SimpleNamespace(runs=runs, rows=rows)
     s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), value=lambda name: {"compliance": SOFT}[name])
     known = {"A": zeros, "L": of_the_torque}
-    monkeypatch.setattr(module, "offset", lambda _, run, channel: known[channel][run])
+    monkeypatch.setattr(module, "zero", lambda _, run, channel: known[channel][run])
     unseen = range(1, RUNS, 3)
     return warm_zeros(s, [i for i in range(RUNS) if i not in unseen], unseen)
 

@@ -36,9 +36,9 @@ def solution_of(
         for t, v in zip(times, speeds, strict=True)
     ]
     eq = SimpleNamespace(runs=runs, rows={(i, c) for i in range(speeds.size) for c in "AL"})
-    s = SimpleNamespace(design=SimpleNamespace(eq=eq), value=lambda name: {"compliance": SOFT}[name])
+    s = SimpleNamespace(design=SimpleNamespace(eq=eq, terms=()), value=lambda name: {"compliance": SOFT}[name])
     known = {"A": zeros, "L": torque * np.asarray(zeros)}
-    for where in (module, offsets):
-        monkeypatch.setattr(where, "offset", lambda _, run, channel: known[channel][run])
+    for where, name in ((module, "zero"), (offsets, "offset")):
+        monkeypatch.setattr(where, name, lambda _, run, channel: known[channel][run])
     unseen = range(1, speeds.size, 3)
     return s, [i for i in range(speeds.size) if i not in unseen], unseen

@@ -11,7 +11,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, offset
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, zero
 from rig.analysis.tracing.runs.alike import alike
 from rig.core.quantiles import Z95
 from rig.model.effect import Array, Parameter, parameter
@@ -71,7 +71,7 @@ def find_between(s: Solution, whole: Sequence[int]) -> Between | None:
     runs = sorted((i for i in whole if (i, "A") in eq.rows and not eq.runs[i].locked), key=lambda i: eq.runs[i].start)
     if len(runs) < 2 * FEWEST:
         return None
-    zeros = np.array([offset(s, i, "A") for i in runs])
+    zeros = np.array([zero(s, i, "A") for i in runs])
     most = PLAINER * _beside_a_drift(np.array([eq.runs[i].start for i in runs]), zeros)
     for steps in range(1, STEPS + 1):
         ends = _best(zeros, steps)

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import offset
+from rig.analysis.tracing.floor.offsets import offset, zero
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.model.effect import MEASURED
 
@@ -32,7 +32,7 @@ def about_a_line(s: Solution) -> float | None:
         return None
     speed = np.array([mean_speed(eq.runs[i]) for i in runs]) / eq.runs[0].ratio
     taken_off = s.value("compliance") * np.array([torque_zero(s, i) for i in runs])
-    zeros = np.array([offset(s, i, "A") - of_effects(s, i) for i in runs]) + taken_off
+    zeros = np.array([zero(s, i, "A") for i in runs]) + taken_off
     z = np.stack([np.ones(speed.size), speed], 1)
     gram = z.T @ z
     if np.linalg.cond(gram) > 1e12:
@@ -43,13 +43,6 @@ def about_a_line(s: Solution) -> float | None:
     on_it = abs(x[1]) > CLEAR * deviation and np.std(left) < LEFT * np.std(zeros)
     on_it = on_it and np.std(z @ x) > SHOWS * np.std(taken_off)
     return float(np.std(left)) if on_it else None
-
-
-def of_effects(s: Solution, run: int) -> float:
-    """What the effects of a model shift the zero of a run by, rad: a wave in the motor angle by what it is on average
-    over a part of a turn (exam 93, case 02)."""
-    columns = ((i, s.design.eq.term(run, term).get("A")) for i, term in enumerate(s.design.terms))
-    return float(sum((z @ s.x[s.design.place(i)]).mean() for i, z in columns if z is not None))
 
 
 def torque_zero(s: Solution, run: int) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -52,13 +52,26 @@ def offset(s: Solution, run: int, channel: str) -> float:
     return float(np.linalg.lstsq(z, r.y - r.z @ s.x[list(r.at)], rcond=None)[0][0])
 
 
+def zero(s: Solution, run: int, channel: str) -> float:
+    """`offset` less what the effects of the model make of it."""
+    return offset(s, run, channel) - of_effects(s, run, channel)
+
+
+def of_effects(s: Solution, run: int, channel: str, but: Collection[str] = ()) -> float:
+    """What the effects of a model, `but` those, shift the mean of a channel of one run by, in its unit: a wave by what
+    it is on average over a part of a turn (exam 93, case 02; exam 94, case 18)."""
+    terms = [i for i, term in enumerate(s.design.terms) if term.name not in but]
+    columns = ((i, s.design.eq.term(run, s.design.terms[i]).get(channel)) for i in terms)
+    return float(sum((z @ s.x[s.design.place(i)]).mean() for i, z in columns if z is not None))
+
+
 def of_the_torque_sensor(s: Solution, runs: Sequence[int]) -> bool:
     """Whether it is the torque sensor's zero that makes those runs' zeros of θ̃ differ: the load's balance shows it as a
     torque that winds the gear up by as much, and of an angle's zero nothing. Friction differs there from run to run, so
     that how its own zeros differ is hard to see."""
     if any((run, "L") not in s.design.eq.rows for run in runs):
         return False
-    angle, torque = (np.array([offset(s, run, channel) for run in runs]) for channel in "AL")
+    angle, torque = (np.array([zero(s, run, channel) for run in runs]) for channel in "AL")
     angle = angle - angle.mean()
     return bool(-s.value("compliance") * (angle @ torque) > SHOWN * (angle @ angle))
 

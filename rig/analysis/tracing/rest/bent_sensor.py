@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import offset
+from rig.analysis.tracing.floor.offsets import of_effects, offset
 from rig.analysis.tracing.rest.drifting_zeros import free
 from rig.model.effect import MEASURED, Array
 
@@ -46,9 +46,7 @@ def is_the_sensors(s: Solution, names: Collection[str], runs: Sequence[int]) -> 
 def _zero(s: Solution, run: int, channel: str) -> float:
     """What the baseline leaves in the mean of a channel, less what all effects make of it that bend no spring: a wave
     of the output's angle has a mean in a run that goes round but in part."""
-    others = [i for i, term in enumerate(s.design.terms) if term.name not in SPRINGS]
-    made = [(s.design.eq.term(run, s.design.terms[i]).get(channel), s.x[s.design.place(i)]) for i in others]
-    return offset(s, run, channel) - sum(float(np.mean(z @ x)) for z, x in made if z is not None)
+    return offset(s, run, channel) - of_effects(s, run, channel, SPRINGS)
 
 
 def _bent(x: Array, torque: Array) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, offset
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, zero
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC
 from rig.model.effect import MEASURED, Array
@@ -65,7 +65,7 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
         return None
 
-    seen = _drift(eq, mine, others, [np.array([offset(s, i, "A") for i in runs]) for runs in (mine, others)])
+    seen = _drift(eq, mine, others, [np.array([zero(s, i, "A") for i in runs]) for runs in (mine, others)])
     if seen is None or not of_the_torque_sensor(s, (*mine, *others)):
         return seen
     torque = abs(seen.size) / s.value("compliance")

@@ -108,6 +108,13 @@ def swelling(angle: Array, x: Array) -> Array:
     return np.hstack([shapes * (x / top)[:, None] ** power for power in (1, 2)])
 
 
+def accelerating(r: Rest) -> Array:
+    """The first waves of the motor's angle as large as the square of its speed, (n, 2·WAVES)."""
+    square = np.square(r.at["speed"])
+    shapes = np.hstack([waves(r.at["motor_angle"], k) for k in range(1, WAVES + 1)])
+    return shapes * (square / max(float(np.nanmax(square, initial=0.0)), 1e-9))[:, None]
+
+
 def drifting(t: Array) -> Array:
     """Slow changes over a campaign, (n, DRIFT): Chebyshev polynomials of its time."""
     low, high = float(t.min()), float(t.max())

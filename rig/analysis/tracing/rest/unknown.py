@@ -15,7 +15,7 @@ from rig.analysis.tracing.rest.coordinates import FINE, INDICES, JOINT, LATE
 from rig.analysis.tracing.rest.home import Home, plainest
 from rig.analysis.tracing.rest.joined import Rest, loudness, rest
 from rig.analysis.tracing.rest.lines import BY_THE_CLOCK, SENSES, best_order, by_the_clock, by_the_day, line
-from rig.analysis.tracing.rest.readings import drifting, in_bins, in_columns, powers, share, swelling
+from rig.analysis.tracing.rest.readings import accelerating, drifting, in_bins, in_columns, powers, share, swelling
 from rig.analysis.tracing.rest.settling import settled
 from rig.analysis.tracing.rest.sudden import since, turned_since
 from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER, of_the_output
@@ -26,6 +26,7 @@ from rig.model.effect import Array
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 BENT = 0.2  # of the excess, what a channel must keep beside a baseline of its own to be where the rest lives
 FOLLOWS = 0.25  # of what another coordinate leaves, what a step may leave that is said before it
+AS_MUCH = 0.97  # of a share: waves as large as the speed itself are foretold to 0.95 by those as large as its square
 LEAST_WAY = 0.1  # of the rows at a speed, forth and back each: with fewer, single runs are all there is of one of them
 WITH_TIME = ("time", "temperature")
 
@@ -57,6 +58,8 @@ def homes(r: Rest, channel: str) -> list[Home]:
     out = alone + [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of)) for name, of in ways]
     out += [Home(name, channel, score(h, of(r)) / h.total, read=in_bins(of), late=True) for name, of in LATE]
     out += [Home(name, channel, share(h, in_columns(of)), read=in_columns(of), late=True) for name, of in SMOOTH]
+    if channel == "M":
+        out += _read_wrong(h, max(home.share for home in out if home.late and home.coordinate == "speed"))
     for name, sense in itertools.product(("motor_angle", "load_angle"), SENSES):
         if (found := best_order(h, name, channel, sense)) is not None:
             out.append(_of_the_way(of_the_output(found, r), sense))
@@ -151,6 +154,14 @@ def _load(r: Rest) -> Array:
 def _is_it(share: float, other: float) -> bool:
     """Whether one share of the excess is all of it, and what the other one leaves several times what it leaves."""
     return other < ALL and 1.0 - share < FOLLOWS * (1.0 - other)
+
+
+def _read_wrong(h: Halves, at_any_size: float) -> list[Home]:
+    """Waves of the motor's angle as large as the square of its speed, where they foretell as much as those of any size:
+    an angle that is read wrong, or an inertia that is another one at each, and no size of its own at any speed."""
+    read = in_columns(accelerating)
+    home = Home("motor_angle", "M", share(h, read), read=read)
+    return [home] if home.share > AS_MUCH * at_any_size else []
 
 
 def _wound(h: Halves, channel: str) -> Home | None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import offset
+from rig.analysis.tracing.floor.offsets import zero
 from rig.analysis.tracing.rest.drifting_zeros import (
     FITTED,
     PLAINER,
@@ -84,7 +84,7 @@ def warm_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> War
         return angles
     if any((i, "L") not in eq.rows for i in (*mine, *others)):
         return None
-    bare = _following(eq, mine, others, [[offset(s, i, "A") for i in runs] for runs in (mine, others)])
+    bare = _following(eq, mine, others, [[zero(s, i, "A") for i in runs] for runs in (mine, others)])
     torque = -bare.slope / s.value("compliance") if bare else 0.0
     return replace(bare, torque=torque) if bare and abs(torque) * bare.span > SENSOR * largest_torque(eq) else None
 
@@ -109,8 +109,8 @@ def _following(
 
 def _zero(s: Solution, run: int) -> float:
     """Of the angles of a run, rad."""
-    zero = offset(s, run, "A")
-    return zero + s.value("compliance") * offset(s, run, "L") if (run, "L") in s.design.eq.rows else zero
+    of_the_torque = zero(s, run, "L") if (run, "L") in s.design.eq.rows else 0.0
+    return zero(s, run, "A") + s.value("compliance") * of_the_torque
 
 
 def _warmth(eq: Equations, runs: Sequence[int]) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, offset
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, zero
 from rig.analysis.tracing.rest.drifting_zeros import (
     FITTED,
     LEFT,
@@ -62,7 +62,7 @@ def zeros_by_speed(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     mine, others = (free(eq, runs) for runs in (fitted, unseen))
     if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
         return None
-    zeros, wanted = (np.array([offset(s, i, "A") for i in runs]) for runs in (mine, others))
+    zeros, wanted = (np.array([zero(s, i, "A") for i in runs]) for runs in (mine, others))
     fast, later = (np.array([eq.runs[i].turning for i in runs]) for runs in (mine, others))
     if np.unique(levels(fast)).size < LEVELS:
         return None

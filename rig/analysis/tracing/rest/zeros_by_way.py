@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, offset
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, zero
 from rig.analysis.tracing.rest.drifting_zeros import FITTED, LEFT, PLAINER, UNSEEN, foretold, free, rivals
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC, RPM
@@ -48,7 +48,7 @@ def zeros_by_way(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> Z
     mine, others = (free(eq, runs) for runs in (fitted, unseen))
     if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
         return None
-    zeros, wanted = (np.array([offset(s, i, "A") for i in runs]) for runs in (mine, others))
+    zeros, wanted = (np.array([zero(s, i, "A") for i in runs]) for runs in (mine, others))
     speed, later = (np.array([mean_speed(eq.runs[i]) for i in runs]) for runs in (mine, others))
     tried = [(above, foretold(_step(speed, above), _step(later, above), zeros)) for above in _between(speed)]
     if not tried or of_the_torque_sensor(s, (*mine, *others)):
