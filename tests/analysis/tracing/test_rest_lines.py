@@ -35,14 +35,16 @@ def test_runs_in_which_the_motor_rests_turn_no_more_often_than_never() -> None:
     assert not _as_the_motor_turns(0.16, np.zeros(3), np.ones(3), APART)
 
 
-@pytest.mark.parametrize(("hz", "loud", "is_the_runs"), [
-    (1 / 70.0, 6, True), (2 / 70.0, 6, True), (1 / 47.0, 6, False), (1 / 70.0, 2, False)
+@pytest.mark.parametrize(("hz", "loud", "lasts", "is_the_runs"), [
+    (1 / 70.0, 6, 60, True), (1 / 47.0, 6, 60, False), (1 / 70.0, 2, 60, False), (2 / 70.0, 6, 60, False),
+    (2 / 70.0, 6, 40, True),
 ])  # fmt: skip
 def test_a_slow_wave_that_begins_with_every_run_is_what_each_does_from_its_beginning_on(
-    hz: float, loud: int, is_the_runs: bool
+    hz: float, loud: int, lasts: int, is_the_runs: bool
 ) -> None:
-    """Of six runs of a minute, seventy seconds apart, a drift in each is a saw tooth (exam 94, case 30)."""
-    run = np.repeat(np.arange(6), 60)
-    time = 70.0 * run + np.tile(np.arange(60.0), 6)
+    """Of six runs of a minute, seventy seconds apart, a drift in each is a saw tooth (exam 94, case 30); a wave that
+    comes round within them is none."""
+    run = np.repeat(np.arange(6), lasts)
+    time = 70.0 * run + np.tile(np.arange(float(lasts)), 6)
     r: Any = SimpleNamespace(run=run, e=np.where(run < loud, 1.0, 1e-3), at={"time": time})
     assert _as_runs_begin(r, hz) is is_the_runs

@@ -120,6 +120,14 @@ def _waves_of_the_output(at: At, way: Along, last: int) -> FreeForm:
     return FreeForm(words, lambda s: at.times(times(load_waves(s, last), way.factor(s)), s), way.state, at.wants)
 
 
+def _turned_round(last: int) -> FreeForm:
+    """What an angle that is read wrong, or an inertia that changes with it, is in the torque."""
+    words = f"{PUSHED.words}: waves of the motor's angle, as large as the square of its speed"
+    return FreeForm(
+        words, lambda s: PUSHED.times(times(motor_waves(s, 1, last), np.square(s.omega_m)[:, None]), s), wants=MOTOR
+    )
+
+
 def _angles(coordinate: str, finer: int) -> Iterator[FreeForm]:
     """What only an angle has: a kinematic error of more orders, and one that changes along the output's turn."""
     if coordinate == "motor_angle":
@@ -130,6 +138,7 @@ def _angles(coordinate: str, finer: int) -> Iterator[FreeForm]:
             return {Port.KINEMATIC_ERROR: values, Port.LEVER: slopes}
 
         yield FreeForm(f"the kinematic error, orders beyond {ORDERS}", sharp, wants=ANGLES)
+        yield _turned_round(PRODUCT * finer)
     if coordinate in ("motor_angle", "load_angle"):
         turn = Along(lambda s: load_waves(s, 2 * finer), "the output's angle")
         yield from _waves_of_the_motor(turn, PRODUCT * finer)
