@@ -16,6 +16,7 @@ from rig.procedures.lock_check import LockCheck, LockProof
 from rig.procedures.standstill import Standstill
 from rig.procedures.weigh import Weighing
 from tests.campaign.rigs import session
+from tests.some import some
 
 SHORT = Standstill(duration=0.05)
 
@@ -42,17 +43,19 @@ WRONG: list[tuple[float, float | None, str]] = [
 
 
 @pytest.mark.slow
-def test_another_weight_than_asked_for_is_refused_with_what_hangs_there(tmp_path: Path) -> None:
-    instead = {HangWeight(asked): None if hung is None else HangWeight(hung) for asked, hung, _ in WRONG}
-    with session(tmp_path, instead=instead) as rig:  # type: ignore[arg-type]
+@pytest.mark.parametrize("case", some(WRONG, 3), ids=lambda case: str(case[:2]))
+def test_another_weight_than_asked_for_is_refused_with_what_hangs_there(
+    tmp_path: Path, case: tuple[float, float | None, str]
+) -> None:
+    asked, hung, words = case
+    with session(tmp_path, instead={HangWeight(asked): None if hung is None else HangWeight(hung)}) as rig:
         rig.tare()
-        for asked, _, words in WRONG:
-            with pytest.raises(NotReady, match=words):
-                rig.change(HangWeight(asked))
-            with pytest.raises(NotReady, match="what the rig is like is not known"):
-                rig.run(SHORT)
-            rig.change(HangWeight(0.0))
-            assert rig.unsure == ""
+        with pytest.raises(NotReady, match=words):
+            rig.change(HangWeight(asked))
+        with pytest.raises(NotReady, match="what the rig is like is not known"):
+            rig.run(SHORT)
+        rig.change(HangWeight(0.0))
+        assert rig.unsure == ""
 
 
 @pytest.mark.slow

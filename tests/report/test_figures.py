@@ -95,7 +95,7 @@ KINDS = [
 @pytest.mark.slow
 @every_figure
 @given(st.data())
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 def test_any_figure_is_drawn_or_absent_whatever_curves_there_are(drawing: Drawing, data: st.DataObject) -> None:
     own = [n for n in NAMES if n.startswith(FAMILY[drawing.name])]
     kinds = data.draw(st.fixed_dictionaries({n: st.sampled_from(KINDS) for n in own}))

@@ -27,8 +27,8 @@ AS_EVER: Final = 3.0  # usual gaps between runs: in a longer one somebody may ha
 
 @dataclass(frozen=True)
 class Between:
-    """Runs in order of time, level by level; by how much the zero steps before every level but the first (m − 1,)
-    [rad], and the 95 % half width of each step."""
+    """Runs in order of time, level by level; by how much the zero steps before every level but the first, rad (m − 1,),
+    and the 95 % half width of each step."""
 
     levels: tuple[tuple[int, ...], ...]
     sizes: Array
