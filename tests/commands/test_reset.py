@@ -19,6 +19,7 @@ from rig.supervisor import State
 from tests.drivers.virtual import wired
 
 
+@pytest.mark.long
 def test_a_fault_is_said_cleared_and_said_to_be_cleared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rig = wired()
     rig.twin.drive.fault(0x3210)

@@ -22,10 +22,10 @@ TRACKING = next(p for p in PHASES if p.name == "tracking")
 
 
 def matrix() -> list[Any]:
-    """Every fault in every phase. At every `make test` each while tracking, and every fourth in one of the other
+    """Every fault in every phase. At every `make test` each while tracking, and every eighth in one of the other
     phases in turn; the rest, two minutes of it, in `make long` and by `hdrig drill`."""
     others = [p for p in PHASES if p is not TRACKING]
-    inner = [(TRACKING, others[k // 4 % len(others)]) if k % 4 == 0 else (TRACKING,) for k in range(len(CAUSES))]
+    inner = [(TRACKING, others[k // 8 % len(others)]) if k % 8 == 0 else (TRACKING,) for k in range(len(CAUSES))]
     return [
         pytest.param(cause, phase, marks=() if phase in inner[k] else pytest.mark.long)
         for k, cause in enumerate(CAUSES)
@@ -47,7 +47,7 @@ def test_every_fault_in_every_phase_ends_as_it_has_to(cause: Cause, phase: Phase
 @pytest.mark.parametrize(
     "phase", [p if p is TRACKING else pytest.param(p, marks=pytest.mark.long) for p in PHASES], ids=lambda p: p.name
 )
-@pytest.mark.parametrize("cause", some(odrive_causes.CAUSES, 12), ids=lambda c: c.name)
+@pytest.mark.parametrize("cause", some(odrive_causes.CAUSES, 8), ids=lambda c: c.name)
 def test_every_fault_of_an_odrive_in_every_phase_ends_as_it_has_to(cause: Cause, phase: Phase) -> None:
     outcome = drill(cause, phase, ODriveRig)
     assert outcome.passed, f"{outcome.wrong}: {outcome.reason}"

@@ -18,6 +18,7 @@ from rig.report.figures import CATALOGUE
 from rig.report.palette import DARK, LIGHT
 from tests.report import made_up
 
+pytestmark = pytest.mark.xdist_group("page")  # the full one is drawn once, not once for every worker
 VOID = {"meta", "br", "img", "link", "hr", "input"}
 SMALL = made_up.curves(revolutions=5, grid=96)
 FEW = {name: values for name, values in SMALL.items() if name.startswith("mse.")}

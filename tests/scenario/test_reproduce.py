@@ -35,6 +35,7 @@ def rulings(folder: Path) -> dict[str, list[str]]:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_shortened_campaign_gives_the_figures_it_has_runs_for_and_dashes_for_the_rest(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

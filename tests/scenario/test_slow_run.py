@@ -71,6 +71,7 @@ def test_the_largest_fourier_coefficients_are_those_of_the_plant(slow_run: Path)
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_same_seed_gives_byte_identical_samples_and_another_does_not(tmp_path: Path) -> None:
     quick = ["--with", "cycles=1", "--with", "amplitude_deg=180", "--with", "frequency=0.08"]  # 9.6 rpm, 13 s
     for name, seed in (("one", "1"), ("same", "1"), ("other", "2")):

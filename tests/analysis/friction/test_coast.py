@@ -49,6 +49,7 @@ def test_inertia_and_friction_lie_within_their_intervals_and_within_a_few_per_ce
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_both_directions_differ_by_no_more_than_their_interval_says() -> None:
     held = []
     for seed in range(24):

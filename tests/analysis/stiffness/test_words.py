@@ -61,6 +61,7 @@ def test_a_path_softer_than_what_was_measured_is_said_to_be() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_limit_inside_the_interval_settles_nothing_and_one_outside_does() -> None:
     def verdict(lower: float) -> Verdict:
         manifest = {"limits": {"torsional_stiffness": {"lower": lower}}}

@@ -46,6 +46,7 @@ def test_intervals_cover_where_runs_differ_by_their_gain() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_intervals_cover_where_there_is_noise_alone() -> None:
     assert 0.90 < coverage(0.0, covariance) < 0.99
 

@@ -46,6 +46,7 @@ def test_a_line_count_that_no_manifest_says_is_found_to_the_line(clean: Prepared
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_an_encoder_that_hardly_moves_has_no_lines(clean: Prepared) -> None:
     runs = clean.split.fitted
     covered = reach([clean.eq.runs[i] for i in runs])

@@ -54,6 +54,8 @@ def test_an_error_of_no_angle_is_no_noise_of_a_run_alone_unless_nothing_turns(
         "torque": turn_by_turn(alone("M", theta, locked), {(0, "M"): e}, (0, "M")),
     }
     rms = {name: found.rms for name, found in made.items() if found}
+    swollen = {name for name, found in made.items() if found and found.swollen > 2.0}
+    assert swollen == (set() if locked else {"sensors"})
     assert rms["torque"] == rms["coarse"] > 0.25
     assert rms["sensors"] == (rms["torque"] if locked else pytest.approx(6 * 0.02, rel=0.15))
 

@@ -32,6 +32,7 @@ def test_a_load_angle_read_late_is_named_though_every_run_has_a_zero_of_its_own(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_zeros_that_follow_no_speed_are_every_runs_own(shared: Path) -> None:
     p = prepare(read_campaign(shared / "cases" / "open-1"), ())
     assert about_a_line(p.baseline) is None

@@ -15,6 +15,7 @@ ARM = {"gravity_unbalance"}  # the arm's weight, which the baseline has no term 
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_weight_is_named_and_what_is_left_goes_with_the_angle_of_the_joint(shared: Path, tmp_path: Path) -> None:
     """Nor is a wave in angle named, though it takes all that is left there: under the arm's weight it is one with the
     spring, whose stiffness it makes four times what the catalogue of the gear says."""

@@ -47,10 +47,11 @@ def _scatter(eq: Equations, key: Key, made: Sequence[Array]) -> Scatter | None:
     d = np.concatenate([np.zeros(0), *(d - d.mean() for d in made if d.size)])
     if d.size < FLOOR_LEAST / 4:
         return None
-    rms, run = float(np.sqrt(np.mean(d**2))), eq.runs[key[0]]
+    whole = rms = float(np.sqrt(np.mean(d**2)))
+    run = eq.runs[key[0]]
     if key[1] == "A" and not run.locked:  # whose noise is the sensors': what goes slowly there is missing, no noise
         rms = min(rms, max(WHITE * roughness(d), float(np.hypot(run.step_m / run.ratio, run.step_l))))
-    return Scatter((key[0], key[0]), rms, d.size, 0.0, autocorrelation(d), freedom(d))
+    return Scatter((key[0], key[0]), rms, d.size, 0.0, autocorrelation(d), freedom(d), whole / max(rms, 1e-300))
 
 
 def roughness(d: Array) -> float:

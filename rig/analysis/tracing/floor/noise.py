@@ -29,6 +29,7 @@ NEVER_COMPARED = "lock tests alone, none of them done twice: all that is left co
 TOO_SHORT = "too few turns to compare them: all that is left counts as noise"
 A_FEW = 2  # runs: where none of more can be compared, what is rough in them has to do, or nothing would be found
 BY_COUNTS = ", which is less than the rounding of the readings leaves: that is taken"
+SWOLLEN = 1.2  # times the floor that is believed, from which on it is said that a run's own was not
 LEAST_OFFSET = 0.25  # of the floor, RMS: a dozen pairs do not show less, and no mean is worth more rows than that
 
 
@@ -110,6 +111,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         kappa[channel] = effective(np.average([s.rho / max(s.rho[0], least**2) for s in usual], axis=0, weights=n))
         apart |= {(i, channel) for s in far for i in s.pair}
         compared = [*_alone(eq, e, channel, among, found), *found]
+        how[channel] += _swollen(eq, compared)
         by_run |= {(i, channel): max(s.rms, least) for s in compared for i in s.pair}
         free |= {(i, channel): s.freedom for s in found for i in s.pair}
         by_run |= _never_compared(eq, e, channel, among, found, friction)
@@ -164,6 +166,19 @@ def _said(eq: Equations, far: Sequence[Scatter]) -> str:
     """The pairs that are left out, in words."""
     names = ", ".join(eq.runs[i].name for s in far for i in s.pair)
     return f"; without {names}, which differ by more than noise does" if far else ""
+
+
+def _swollen(eq: Equations, compared: Sequence[Scatter]) -> str:
+    """The runs whose turns differ by what is no noise, in words."""
+    found = sorted((s for s in compared if s.swollen > SWOLLEN), key=lambda s: -s.swollen)
+    if not found:
+        return ""
+    first = eq.runs[found[0].pair[0]].name
+    more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+    return (
+        f"; in {first}{more}, which nobody repeated, one turn differs from the next by up to {found[0].swollen:.2g} "
+        "times as much: it goes slowly, is no noise and was left out"
+    )
 
 
 def _at_reversals(noise: Noise, white: float = 0.0) -> Noise:

@@ -29,6 +29,7 @@ class Scatter:
     offset: float  # difference of the two means over sqrt 2
     rho: Array
     freedom: float  # independent parts the RMS is made of: a gain that is never twice the same is one
+    swollen: float = 1.0  # by how much larger it was with what goes slowly, which was no noise
 
 
 def compare(theta_a: Array, e_a: Array, theta_b: Array, e_b: Array) -> Array:
