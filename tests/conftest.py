@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +16,7 @@ from hypothesis import settings
 import rig.core.can_libraries  # noqa: F401  # before a test imports python-can: with all it brings it takes 1.6 s more
 from rig.process.realtime import RealTime
 from rig.report import page
-from tests.chromium import ARGUMENTS, NAMES, SIZE
+from tests.chromium import ARGUMENTS, SIZE, chromium
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext
@@ -50,7 +49,7 @@ def memory_is_not_locked() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     """A real Chromium, one for all tests of a process. Where there is none they are left out, and say so."""
-    path = next((path for name in NAMES if (path := shutil.which(name)) is not None), None)
+    path = chromium()
     if path is None:
         pytest.skip("there is no Chromium on this machine: the page is not tried in a browser")
     from playwright.sync_api import sync_playwright  # a fifth of a second, of which most tests have no need

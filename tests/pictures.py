@@ -16,9 +16,9 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
-from tests.chromium import ARGUMENTS
+from tests.chromium import ARGUMENTS, chromium
 from tests.console.browser.rigs import HDRIG, QUIET, rig
-from tests.live.photograph import CHROMIUM, photograph
+from tests.live.photograph import photograph
 
 PLACE = Path(__file__).parent.parent / ".readme"
 DESK = (1600, 900)
@@ -82,7 +82,7 @@ PICTURES: dict[str, Callable[[Path, Path], None]] = {f.__name__: f for f in (con
 
 
 def _page(playwright: object, width: int, height: int) -> Page:
-    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)  # type: ignore[attr-defined]
+    browser = playwright.chromium.launch(executable_path=chromium(), args=ARGUMENTS)  # type: ignore[attr-defined]
     page: Page = browser.new_page(viewport={"width": width, "height": height})
     return page
 

@@ -11,6 +11,8 @@ from rig.core.errors import UsageError
 from rig.procedures import CATALOGUE, procedure_class
 from tests.commands.made_run import made_run
 
+pytestmark = pytest.mark.usefixtures("no_pictures")
+
 
 @pytest.mark.parametrize(
     ("said", "limits"),

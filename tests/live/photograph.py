@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-CHROMIUM = "/usr/bin/chromium"
+from tests.chromium import chromium
+
 ARGUMENTS = [
     "--no-sandbox",
     "--use-gl=angle",
@@ -48,7 +49,7 @@ def _taken(url: str, picture: Path, width: int, height: int) -> list[str]:
 
     answered: list[str] = []
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=chromium(), args=ARGUMENTS)
         page = browser.new_page(viewport={"width": width, "height": height})
         page.on("response", lambda response: answered.append(response.url))
         page.goto(url, timeout=60_000)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.lines import _as_runs_begin, _as_the_motor_turns
+from rig.analysis.tracing.rest.lines import _as_the_motor_turns
 from rig.core.units import RPM
 
 APART = 0.01  # Hz, of runs of 100 s
@@ -33,18 +30,3 @@ def test_of_a_motor_so_slow_that_every_frequency_is_near_a_multiple_nothing_is_s
 
 def test_runs_in_which_the_motor_rests_turn_no_more_often_than_never() -> None:
     assert not _as_the_motor_turns(0.16, np.zeros(3), np.ones(3), APART)
-
-
-@pytest.mark.parametrize(("hz", "loud", "lasts", "is_the_runs"), [
-    (1 / 70.0, 6, 60, True), (1 / 47.0, 6, 60, False), (1 / 70.0, 2, 60, False), (2 / 70.0, 6, 60, False),
-    (2 / 70.0, 6, 40, True),
-])  # fmt: skip
-def test_a_slow_wave_that_begins_with_every_run_is_what_each_does_from_its_beginning_on(
-    hz: float, loud: int, lasts: int, is_the_runs: bool
-) -> None:
-    """Of six runs of a minute, seventy seconds apart, a drift in each is a saw tooth (exam 94, case 30); a wave that
-    comes round within them is none."""
-    run = np.repeat(np.arange(6), lasts)
-    time = 70.0 * run + np.tile(np.arange(float(lasts)), 6)
-    r: Any = SimpleNamespace(run=run, e=np.where(run < loud, 1.0, 1e-3), at={"time": time})
-    assert _as_runs_begin(r, hz) is is_the_runs

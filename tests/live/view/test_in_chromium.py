@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.live.photograph import CHROMIUM, photograph, share_of
+from tests.chromium import chromium
+from tests.live.photograph import photograph, share_of
 from tests.live.view.test_recording import folder
 
 __all__ = ["folder"]  # a fixture
@@ -16,7 +17,7 @@ FORWARD, ERROR, SIMULATED = (0x74, 0xB6, 0xF2), (0x5F, 0xC7, 0x9A), (0xC9, 0xA0,
 
 
 @pytest.mark.long
-@pytest.mark.skipif(not Path(CHROMIUM).exists(), reason=f"no browser at {CHROMIUM}")
+@pytest.mark.skipif(chromium() is None, reason="there is no Chromium on this machine")
 def test_chromium_draws_planes_and_curves_says_simulated_and_asks_no_other_machine(
     folder: Path, tmp_path: Path
 ) -> None:

@@ -32,9 +32,6 @@ TOLD = 0.1  # of the motor's rate, what a run tells apart: a fifth of all freque
 STEP = 1 / (32 * LOWEST)  # s: a sixteenth of the shortest period
 PHASES = 30  # of its period
 OVERTONES = (1, 2, 3)
-IN_STEP = 0.9  # length of the mean of all phases: of three runs by chance one set in thirty, of five one in a thousand
-FEWEST = 3  # runs as loud as each other
-ROUND = 1.5  # periods of a run: in more of them a wave is seen to come back
 LOADS = 8  # levels of torque
 SENSES: Sequence[Callable[[Rest], Array]] = (lambda r: np.ones(r.e.size), lambda r: r.at["direction"])
 """As it is, and as friction shows it: the other way round on the way back."""
@@ -190,22 +187,8 @@ def by_the_day(h: Halves, channel: str, sense: Callable[[Rest], Array]) -> Home 
         return None
     e = r.e * r.worth * sense(r)
     f = _sharpened(x, e, float(rough[int(np.argmax(spectrum(x, e, rough)))]), step)
-    if _as_runs_begin(r, f):
-        return None
     read = in_columns(lambda rest: waves(TURN * rest.at["time"], f) * sense(rest)[:, None])
     return Home("time_periodic", channel, share(h, read), frequency_hz=f, read=read, late=True)
-
-
-def _as_runs_begin(r: Rest, f: float) -> bool:
-    """Whether a wave of `f` Hz stands at one phase when those runs begin that have the rest, and none of them sees it
-    come round: it is then what each does from its beginning on, and they follow each other by the clock."""
-    runs = np.unique(r.run)
-    power = np.array([float(np.sum(r.e[r.run == run] ** 2)) for run in runs])
-    begun = np.array([float(r.at["time"][r.run == run].min()) for run in runs])
-    lasts = np.array([float(np.ptp(r.at["time"][r.run == run])) for run in runs])
-    if power.sum() ** 2 < FEWEST * float(power @ power) or f * float(lasts @ power) > ROUND * power.sum():
-        return False
-    return bool(abs(np.exp(1j * TURN * f * begun) @ power) > IN_STEP * power.sum())
 
 
 def _stepped(t: Array, e: Array) -> Array:
