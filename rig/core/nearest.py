@@ -13,5 +13,5 @@ def nearest(wrong: str, valid: Iterable[str]) -> str:
     """ "did you mean 'x'?", or the list of what exists."""
     names = sorted(valid)
     close = difflib.get_close_matches(wrong, names, n=1, cutoff=ALIKE if len(wrong) > SHORT else 0.5)
-    close = close or [name for name in names if wrong in name.split("_")]  # rpm for speed_rpm
+    close = close or sorted((n for n in names if wrong in n.replace("-", "_").split("_")), key=len)  # rpm for speed_rpm
     return f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"

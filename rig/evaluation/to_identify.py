@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from rig.core.errors import DataError, HdrigError, said_of
 from rig.runfile.copies import once
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 Say = Callable[[str], None]
 """Told of progress; what it is told need not be kept."""
+FEW: Final = 2  # names in one sentence
 
 
 class Opened(NamedTuple):
@@ -71,14 +72,26 @@ def left_out(name: str, why: str) -> str:
     return f"{name} is left out: {why}"
 
 
+def _left_out_alike(names: Sequence[str], why: str) -> str:
+    """The same of several, in one sentence: a campaign makes a check after every change by hand."""
+    if len(names) == 1:
+        return left_out(names[0], why)
+    more = len(names) - FEW
+    listed = f"{', '.join(names[:FEW])} and {more} more" if more > 0 else " and ".join(names)
+    return f"{listed} are left out: {why}"
+
+
 def _experiments(runs: Sequence[Run], tell: Say) -> list[Run]:
     """Those that came to their end; `tell` hears of the others. Raises DataError where there is none."""
+    out: dict[str, list[str]] = {}
     found = []
     for run in runs:
         if why := _no_experiment(run):
-            tell(left_out(run.name, why))
+            out.setdefault(why, []).append(run.name)
         else:
             found.append(run)
+    for why, names in out.items():
+        tell(_left_out_alike(names, why))
     if not found:
         raise DataError("no completed run of an experiment among these folders: nothing to identify from")
     return found

@@ -30,6 +30,14 @@ ANOTHER: Final = re.compile(r",\s*(\w+)\s*=")
 WITH_MORE: Final = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 
 
+class _RefusedError(Exception):
+    """A value and what was expected of it, without who asks."""
+
+    def __init__(self, raw: Any, expected: str) -> None:
+        self.raw, self.expected = raw, expected
+        super().__init__(expected)
+
+
 def make(kind: type[Made], given: Mapping[str, Any], title: str) -> Made:
     """`kind`, a dataclass whose fields all have defaults, with the values `given`; `title` is what errors call it.
 
@@ -43,7 +51,12 @@ def make(kind: type[Made], given: Mapping[str, Any], title: str) -> Made:
     for name, raw in given.items():
         _refuse_several(name, raw, known)
         _refuse_unit(kind, known[name], raw)
-    values = {name: _value(known[name], raw) for name, raw in given.items()}
+    values = {}
+    for name, raw in given.items():
+        try:
+            values[name] = _value(known[name], raw)
+        except _RefusedError as refused:
+            raise UsageError(_sentence(kind, name, refused)) from None
     try:
         return kind(**values)
     except (OverflowError, ZeroDivisionError):
@@ -83,19 +96,19 @@ def _value(field: Field[Any], raw: Any) -> Any:
         raw = _listed(raw)
     one = isinstance(raw, float | int) and not isinstance(raw, bool)
     if wanted is tuple and one:
-        return (_number(field, raw, signed),)
+        return (_number(raw, signed),)
     if wanted is tuple and isinstance(raw, list | tuple) and raw:
-        return tuple(_number(field, value, signed) for value in raw)
+        return tuple(_number(value, signed) for value in raw)
     if wanted is float:
-        return _number(field, raw, signed)
+        return _number(raw, signed)
     if wanted is str and isinstance(raw, list | tuple):  # and a list of several
-        return ",".join(f"{_number(field, value, signed=True):.12g}" for value in raw)
+        return ",".join(f"{_number(value, signed=True):.12g}" for value in raw)
     if wanted is str and one:  # a list written as text, of one: 900 for "900"
-        return f"{_number(field, raw, signed=True):.12g}"
+        return f"{_number(raw, signed=True):.12g}"
     if not isinstance(raw, wanted) or isinstance(raw, bool) is not (wanted is bool):
-        raise _refused(field, raw, WORDS.get(wanted, wanted.__name__))
+        raise _RefusedError(raw, WORDS.get(wanted, wanted.__name__))
     if isinstance(raw, int) and not isinstance(raw, bool):
-        _number(field, raw, signed)
+        _number(raw, signed)
     return raw
 
 
@@ -110,19 +123,26 @@ def _listed(text: str) -> Any:
         return text
 
 
-def _number(field: Field[Any], raw: Any, signed: bool) -> float:
+def _number(raw: Any, signed: bool) -> float:
     if isinstance(raw, bool) or not isinstance(raw, float | int) or not -math.inf < raw < math.inf:
-        raise _refused(field, raw, WORDS[float])
+        raise _RefusedError(raw, WORDS[float])
     if not -LARGEST < raw < LARGEST:
-        raise _refused(field, raw, f"a number below {LARGEST:g}")
+        raise _RefusedError(raw, f"a number below {LARGEST:g}")
     if raw <= 0 and not signed:
-        raise _refused(field, raw, "more than 0")
+        raise _RefusedError(raw, "more than 0")
     return float(raw)
 
 
-def _refused(field: Field[Any], raw: Any, expected: str) -> UsageError:
-    shown = str(raw)
+def _sentence(kind: type[Any], name: str, refused: _RefusedError) -> str:
+    """Name, value, what was expected and its unit, and an example as --with takes it."""
+    field = next(one for one in told(kind) if one.name == name)
+    shown, expected = str(refused.raw), refused.expected
     shown = shown if len(shown) <= 60 else shown[:57] + "..."
-    if isinstance(raw, str) and expected in (WORDS[float], WORDS[int]) and NUMBER.fullmatch(raw.strip()):
+    if (
+        isinstance(refused.raw, str)
+        and expected in (WORDS[float], WORDS[int])
+        and NUMBER.fullmatch(refused.raw.strip())
+    ):
         shown, expected = f'"{shown}"', f"{expected}, not text"
-    return UsageError(f"{field.name} = {shown}: expected {expected}, for example {field.default}")
+    unit = f" {field.unit}" if field.unit and expected[-1].isdigit() else ""
+    return f"{name} = {shown}: expected {expected}{unit}, for example {field.written(field.default)}"

@@ -48,6 +48,16 @@ def test_a_run_that_nothing_is_identified_from_is_named(tmp_path: Path) -> None:
     ]
 
 
+def test_what_is_left_out_for_the_same_reason_is_one_sentence(tmp_path: Path) -> None:
+    names = ("weigh", "lock-check", "sign-and-scale", "weigh-again")
+    checks = [made_run(tmp_path / name, {"procedure": "other"}) for name in names]
+    good = made_run(tmp_path / "good")
+    for several, who in ((checks, "weigh, lock-check and 2 more"), (checks[:2], "weigh and lock-check")):
+        assert open_runs([*several, good], lambda text: None).said == (
+            f"{who} are left out: its procedure is no experiment (other)",
+        )
+
+
 def test_runs_of_two_loads_are_told_of(tmp_path: Path) -> None:
     folders = [made_run(tmp_path / name, {"declared": {"J_l": J}}) for name, J in (("bare", 0.8), ("laden", 1.2))]
     _, _, said = open_runs(folders, lambda text: None)

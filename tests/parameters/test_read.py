@@ -16,6 +16,12 @@ class Asked:
     rates: tuple[float, ...] = (1.0, 0.3)
 
 
+@dataclass(frozen=True)
+class Slow:
+    frequency: float = 0.01  # Hz, of the triangle
+    cycles: int = 2  # of it
+
+
 @pytest.mark.parametrize(("raw", "kept"), [(900, "900"), (9.6, "9.6"), (-5, "-5"), ("5,10", "5,10")])
 def test_one_number_where_a_list_is_written_as_text_is_a_list_of_one(raw: object, kept: str) -> None:
     made = make(Asked, {"speeds_rpm": raw}, "friction").speeds_rpm
@@ -48,3 +54,13 @@ def test_a_list_kept_as_text_may_be_written_as_one(written: object) -> None:
 def test_what_is_no_list_of_numbers_above_zero_is_refused(written: str) -> None:
     with pytest.raises(UsageError, match="rates = "):
         make(Asked, {"rates": written}, "try")
+
+
+def test_what_is_refused_is_told_with_its_unit() -> None:
+    for given, sentence in (
+        ({"frequency": -5.0}, "frequency = -5.0: expected more than 0 Hz, for example 0.01 Hz"),
+        ({"cycles": 0}, "cycles = 0: expected more than 0, for example 2"),
+    ):
+        with pytest.raises(UsageError) as refused:
+            make(Slow, given, "try")
+        assert str(refused.value) == sentence

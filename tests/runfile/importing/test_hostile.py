@@ -131,6 +131,11 @@ def test_zeros_alone_are_no_utf16(foreign: Foreign) -> None:
     assert foreign.refused(foreign.bytes(bytes(64))).endswith("is not text: byte 0 is 0 (csv.encoding = 'utf-8')")
 
 
+def test_a_binary_file_is_no_utf16(foreign: Foreign) -> None:
+    said = foreign.refused(foreign.bytes(b"\x7fELF\x02\x01\x01" + bytes(9) + b"\x03\x00>\x00\x01" + bytes(range(256))))
+    assert said == "run.csv is not text: byte 7 is 0 (csv.encoding = 'utf-8')"
+
+
 def test_lines_before_the_header_are_found_and_how_many(foreign: Foreign) -> None:
     path = foreign.file()
     path.write_text(f"Logger 3\nrig: north; 20 °C\n\n{path.read_text()}")

@@ -18,6 +18,8 @@ from rig.runfile.manifest import SIMULATED
 
 CHUNK = 1 << 20  # bytes
 PREAMBLE = 100  # lines that a logger may write before its header
+LOOKED_AT = 64  # bytes at the start of a file whose zeros tell two-byte letters
+MOSTLY = 0.5  # of the letters: a header may hold a θ, which has no zero byte
 LONGEST_LINE = 1 << 20  # characters; a table of ten thousand columns has a header of a fifth of that
 
 
@@ -111,12 +113,15 @@ def check_text(path: Path, encoding: str) -> None:
 
 
 def utf16(start: bytes) -> str:
-    """What to set for a file that starts as UTF-16 does, with a mark or with a letter of two bytes; "" for others."""
+    """What to set for a file that starts as UTF-16 does, with a mark or with letters of two bytes; "" for others.
+
+    One byte of each Latin letter is zero there and the other is none; in a binary file zeros stand where they like."""
+    odd, even = (start[at:LOOKED_AT:2].count(0) / max(1, len(start[at:LOOKED_AT:2])) for at in (1, 0))
     if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         found = "utf-16"
-    elif start[1:2] == b"\0" and start[:1] != b"\0":
+    elif odd > MOSTLY and not even:
         found = "utf-16-le"
-    elif start[:1] == b"\0" and start[1:2] != b"\0":
+    elif even > MOSTLY and not odd:
         found = "utf-16-be"
     else:
         return ""
