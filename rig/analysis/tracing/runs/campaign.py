@@ -26,6 +26,7 @@ from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.rigid import no_spring, unweighed_inertia
 from rig.analysis.tracing.runs.same_rows import same_rows
 from rig.analysis.tracing.runs.told_once import Said, left_out, told_once
+from rig.analysis.tracing.runs.turned import swings_alone, too_short
 from rig.analysis.tracing.runs.unfinished import unfinished
 from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refuse_odd_angles
 from rig.analysis.tracing.runs.unweighed import weighed
@@ -38,7 +39,6 @@ from rig.runfile.doubt import changed
 from rig.runfile.manifest import Missing, is_nameless
 from rig.runfile.run import Run
 
-LEAST_TURNED = 1.0  # turns of the motor in a run with a free output: less shows no order, and no floor
 DAY = "[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]"  # a folder of the runs of one day
 LEANT_ON = {"t": "time column that increases", "theta_m": "θ_m", "theta_l": "θ_l", "tau_l": "τ_l"}
 """Channels that something stands in for where they were not measured, in words."""
@@ -98,7 +98,7 @@ def read_campaign(folder: Path, look: Look = FIRST) -> Campaign:
     out += [r for r in found if isinstance(r, Said)]
     runs = [r for r in found if isinstance(r, Recording)]
     refuse_odd_angles(runs, name)
-    for sort in (_copies, _odd, _lacking, _same_gear, _odd_torques, _odd_balances):
+    for sort in (_copies, _odd, _swings_alone, _lacking, _same_gear, _odd_torques, _odd_balances):
         runs, odd = sort(runs)
         out += odd
     runs, discs = with_discs(runs)
@@ -213,12 +213,9 @@ def _unfit(made: Recording) -> str:
     """Why a run that can be read is none for a trace; "" where it is one."""
     if not made.pieces:
         return "it has no stretch without a gap that is long enough for the low-pass, some tenths of a second"
-    angle = np.concatenate([p.theta_m for p in made.pieces])
-    turned = float(np.ptp(angle)) / (2 * np.pi)
     if made.locked and not made.input_locked and (why := _gave_way(made)):
         return why
-    if turned < LEAST_TURNED and not made.locked and made.procedure != "standstill":
-        said = f"its motor went {turned:.2f} of a turn, a kinematic error needs a whole one"
+    if said := too_short(made):
         odd = odd_angles(made)
         return f"{said}; {odd}" if odd else said
     return ""
@@ -238,6 +235,11 @@ def _odd(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
 def _copies(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
     """Of runs with the same rows all but the first are left out."""
     return _apart(runs, same_rows(runs))
+
+
+def _swings_alone(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
+    """Runs that swing by less than a turn are left out where no other has the kinematic error."""
+    return _apart(runs, swings_alone(runs))
 
 
 def _odd_torques(runs: list[Recording]) -> tuple[list[Recording], list[Said]]:
