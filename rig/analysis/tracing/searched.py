@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -35,16 +35,19 @@ SCATTERS: Final = 0.5  # of the floor, how far friction lies apart from run to r
 OTHER: Final = 0.05  # relative, of the gear: an inertia that ran away had gone by 0.15
 
 
-def searched(p: Prepared, wanted: frozenset[str] = frozenset()) -> tuple[Selected, Found]:
+def searched(
+    p: Prepared, wanted: frozenset[str] = frozenset(), shown: Callable[[Solution], bool] | None = None
+) -> tuple[Selected, Found]:
     """What stands of all that was searched for, and the candidates of the library. Where only some names are `wanted`,
-    and the search brings none of them, nobody asks for what else might stand."""
+    and the search brings none of them, or what is looked for is not `shown` beside what stands, nobody asks for what
+    else might stand: that takes minutes."""
     runs = p.split.fitted
     covered = replace(reach([p.eq.runs[i] for i in runs]), torque_noise=torque_noise(p.eq))
     start = fit(design(p.eq, (), runs))
     quiet = still(start, p.floors)
     tried = Tried(p, with_lines(covered, start, runs))
     calm = quiet or is_calm(p)
-    selected, found, covered = _selected(p, start, tried, quiet, calm, wanted)
+    selected, found, covered = _selected(p, start, tried, quiet, calm, wanted, shown)
     if (calm and not is_certain(selected, p.held_out)) or is_calm_there(p, selected):
         found = Found(start, found.ranking)
         selected = select(p, found, runs, covered)
@@ -80,6 +83,7 @@ def _selected(
     quiet: bool,
     calm: bool,
     wanted: frozenset[str],
+    shown: Callable[[Solution], bool] | None,
     but: frozenset[str] = frozenset(),
 ) -> tuple[Selected, Found, Reach]:
     """What stands of a search through all `but` some effects, what it found, and what is covered by then."""
@@ -97,12 +101,12 @@ def _selected(
         return alone, Found(start, found.ranking), covered
     if warmer := _warmer(selected, found, runs, covered):
         return warmer, found, covered
-    asked = not wanted or not wanted.isdisjoint(found.names)
+    asked = (not wanted or not wanted.isdisjoint(found.names)) and (shown is None or shown(selected.solution))
     if asked and (not quiet or selected.loud):  # friction of one speed is told by all runs, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):
         # zeros were let go for nothing, and with them a run's mean torque told nothing of its mean wind-up
-        other = _selected(p, start, tried, quiet, calm, wanted, _remembering(tried.bank.terms))
+        other = _selected(p, start, tried, quiet, calm, wanted, shown, _remembering(tried.bank.terms))
         return other if _is_better(other[0], selected) else (selected, found, covered)
     return selected, found, covered
 
