@@ -9,6 +9,7 @@ import numpy as np
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.repeats import Scatter
 from rig.analysis.tracing.thresholds import ZERO
+from rig.model.effect import Array
 
 LEAST = 0.2  # of what a zero is believed to wander by: no wander that repeats show is smaller
 SHOWN = 0.5  # of it: all of a torque's, none of an angle's
@@ -69,11 +70,23 @@ def of_the_torque_sensor(s: Solution, runs: Sequence[int]) -> bool:
     """Whether it is the torque sensor's zero that makes those runs' zeros of θ̃ differ: the load's balance shows it as a
     torque that winds the gear up by as much, and of an angle's zero nothing. Friction differs there from run to run, so
     that how its own zeros differ is hard to see."""
-    if any((run, "L") not in s.design.eq.rows for run in runs):
-        return False
+    pair = _angle_and_torque(s, runs)
+    return pair is not None and bool(-s.value("compliance") * (pair[0] @ pair[1]) > SHOWN * (pair[0] @ pair[0]))
+
+
+def by_the_torque_sensor(s: Solution, runs: Sequence[int]) -> bool:
+    """Whether it is the torque sensor's zero that makes those runs' zeros of the load's balance differ: the angle, too,
+    is off by what they seem to wind the gear up by. True where that was not measured, for then nobody knows."""
+    pair = _angle_and_torque(s, runs)
+    return pair is None or bool(-(pair[0] @ pair[1]) > SHOWN * s.value("compliance") * (pair[1] @ pair[1]))
+
+
+def _angle_and_torque(s: Solution, runs: Sequence[int]) -> tuple[Array, Array] | None:
+    """By how much the zeros of θ̃ [rad] and of the load's balance [N·m] lie from those of all, of runs with both."""
+    if any((run, channel) not in s.design.eq.rows for run in runs for channel in "AL"):
+        return None
     angle, torque = (np.array([zero(s, run, channel) for run in runs]) for channel in "AL")
-    angle = angle - angle.mean()
-    return bool(-s.value("compliance") * (angle @ torque) > SHOWN * (angle @ angle))
+    return angle - angle.mean(), torque - torque.mean()
 
 
 def _on_one_side(s: Solution, a: int, b: int) -> bool:

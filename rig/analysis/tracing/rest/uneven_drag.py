@@ -1,5 +1,5 @@
-"""A drag of the motor that is more one way, the more the faster: every run has a zero of the motor's torque of its own,
-which takes it on, so that no error shows it.
+"""A drag of the motor, or of the load, that is more one way, the more the faster: every run has a zero of its own in
+each balance of torques, which takes it on, so that no error shows it, or little of it.
 
 A run that turns one way at one speed cannot tell it from a zero. All of them together can: their zeros lie on one curve
 over the size of the speed, the same forth and back, and those of unseen runs on the curve through the fitted ones'.
@@ -15,7 +15,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import offset
+from rig.analysis.tracing.floor.offsets import by_the_torque_sensor, offset
 from rig.analysis.tracing.rest.drifting_zeros import foretold
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.quantiles import Z95
@@ -30,7 +30,11 @@ ONE_WAY: Final = 0.9  # of the way
 POWERS: Final = (0.5, 1.0, 2.0)  # of a film between lip and shaft, of a fluid, of what it stirs
 LEFT: Final = 0.4  # of what friction leaves of the unseen zeros, or a drift does
 PLAIN: Final = 3.0  # half widths of its interval, six standard errors
-LARGE: Final = 2.0  # floors of the motor's torque: less matters to nobody
+LARGE: Final = 2.0  # floors of that torque: less matters to nobody
+WHAT: Final = {
+    "M": ("motor", 1e3, "mN·m"),
+    "L": ("load", 1.0, "N·m"),
+}  # by the channel, and the unit that it is told in
 
 
 @dataclass(frozen=True)
@@ -42,23 +46,28 @@ class UnevenDrag:
     half: float
     speed: float
     foretold: float
+    channel: str = "M"
 
     def sentence(self) -> str:
         """What is said of it."""
         way = "forward" if self.size > 0 else "backward"
+        what, times, unit = WHAT[self.channel]
         return (
-            f"The motor is dragged by {1e3 * abs(self.size):.3g} ± {1e3 * self.half:.2g} mN·m more {way} than the "
-            f"other way at {self.speed / RPM:.0f} rpm, and by less the slower it turns; it foretells "
-            f"{self.foretold:.0%} of what the zeros of the motor's torque in unseen runs differ by. Every run has such "
-            "a zero of its own, so that no error shows it, and no effect of the library explains it."
+            f"The {what} is dragged by {times * abs(self.size):.3g} ± {times * self.half:.2g} {unit} more {way} than "
+            f"the other way at {self.speed / RPM:.0f} rpm of the motor, and by less the slower it turns; it foretells "
+            f"{self.foretold:.0%} of what the zeros of the {what}'s torque in unseen runs differ by. Every run has "
+            "such a zero of its own, so that no error shows all of it, and no effect of the library explains it."
         )
 
 
-def uneven_drag(s: Solution, fitted: Sequence[int], unseen: Sequence[int], floor: float) -> UnevenDrag | None:
-    """Of the zeros of the motor's torque; None where they lie on no curve over the speed, or on one that is less than
-    the `floor` [N·m], or where hardly any run turns fast the other way."""
+def uneven_drag(
+    s: Solution, fitted: Sequence[int], unseen: Sequence[int], floor: float, channel: str = "M"
+) -> UnevenDrag | None:
+    """Of the zeros of the motor's torque, or of the load's balance (`channel` M or L); None where they lie on no curve
+    over the speed, or on one that is less than the `floor` [N·m], or where hardly any run turns fast the other way, or
+    where it is the torque sensor's own zero, which winds nothing up."""
     eq = s.design.eq
-    mine, others = (_one_way(eq, runs) for runs in (fitted, unseen))
+    mine, others = (_one_way(eq, runs, channel) for runs in (fitted, unseen))
     speed, later = (np.array([mean_speed(eq.runs[i]) for i in runs]) for runs in (mine, others))
     if speed.size < FITTED or later.size < UNSEEN:
         return None
@@ -66,7 +75,7 @@ def uneven_drag(s: Solution, fitted: Sequence[int], unseen: Sequence[int], floor
     if min(np.sum(fast & (speed > 0)), np.sum(fast & (speed < 0))) < EACH_WAY:
         return None
     begun, after = (np.array([eq.runs[i].start for i in runs]) for runs in (mine, others))
-    zeros, wanted = (np.array([offset(s, i, "M") for i in runs]) for runs in (mine, others))
+    zeros, wanted = (np.array([offset(s, i, channel) for i in runs]) for runs in (mine, others))
     plain, there = _friction(speed), _friction(later)
     fastest = np.abs(speed).max()
     before = _left(plain, there, zeros, wanted)
@@ -77,12 +86,14 @@ def uneven_drag(s: Solution, fitted: Sequence[int], unseen: Sequence[int], floor
     size, half = _size(tried[best][0], zeros)
     if left > LEFT * min(before, drifts) or abs(size) < max(LARGE * floor / 2, PLAIN * half):
         return None
-    return UnevenDrag(2 * size, 2 * half, float(fastest), 1 - (left / before) ** 2)
+    if channel == "L" and by_the_torque_sensor(s, (*mine, *others)):
+        return None
+    return UnevenDrag(2 * size, 2 * half, float(fastest), 1 - (left / before) ** 2, channel)
 
 
-def _one_way(eq: Equations, runs: Sequence[int]) -> list[int]:
+def _one_way(eq: Equations, runs: Sequence[int], channel: str) -> list[int]:
     """Those in which the motor turned freely, one way."""
-    free = [i for i in runs if (i, "M") in eq.rows and not eq.runs[i].locked]
+    free = [i for i in runs if (i, channel) in eq.rows and not eq.runs[i].locked]
     return [i for i in free if abs(mean_speed(eq.runs[i])) > ONE_WAY * eq.runs[i].turning]
 
 

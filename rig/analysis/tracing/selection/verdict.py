@@ -17,8 +17,9 @@ from rig.analysis.tracing.rest.bent_sensor import SPRINGS, is_the_sensors
 from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
 from rig.analysis.tracing.rest.gains_of_locks import gains_of_locks
 from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.uneven_drag import uneven_drag
-from rig.analysis.tracing.rest.uneven_friction import uneven_friction
+from rig.analysis.tracing.rest.joined import loudness
+from rig.analysis.tracing.rest.uneven_drag import UnevenDrag, uneven_drag
+from rig.analysis.tracing.rest.uneven_friction import UnevenFriction, uneven_friction
 from rig.analysis.tracing.rest.warm_zeros import warm_zeros
 from rig.analysis.tracing.rest.zeros_by_speed import zeros_by_speed
 from rig.analysis.tracing.rest.zeros_by_way import zeros_by_way
@@ -75,6 +76,8 @@ def _decided(asked: Asked) -> Conclusion:
         return elsewhere or _jumped(p, beside) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
     if not names and asked.worst[1] < LITTLE and (drift := _drifting(p, s, names, asked.floors)):
         return drift  # of many floors, which no error shows: the little that is left is what of it falls within runs
+    if drag_one_way := _loads_drag(asked):
+        return drag_one_way
     where = where_left(p, s, asked.after, asked.floors, asked.one)
     return _with_a_remainder(asked, where) or _unknown(asked, where)
 
@@ -185,14 +188,27 @@ def _jumped(p: Prepared, names: tuple[str, ...]) -> Conclusion | None:
 def _uneven(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
     """Nothing is above the floor, but the motor's friction or its drag is another one each way; None where neither is.
     Names stand beside it."""
-    loudness = [x for (_, c), x in floors.items() if c == "M"]
-    if not loudness:
+    floor = {c: float(np.median(some)) for c in "ML" if (some := [x for (_, k), x in floors.items() if k == c])}
+    runs = (p.split.fitted, p.split.held_out)
+    friction = uneven_friction(p.campaign.runs, floor["M"], s.value("tau_l0")) if "M" in floor else None
+    drags = (uneven_drag(s, *runs, loud, channel) for channel, loud in floor.items())
+    uneven = friction or next((drag for drag in drags if drag), None)
+    return None if uneven is None else _one_way(uneven, names)
+
+
+def _loads_drag(asked: Asked) -> Conclusion | None:
+    """Nothing is above the floor but in the load's balance, where a drag that is more one way leaves what its runs'
+    zeros do not take on; None where there is no such drag."""
+    p = asked.p
+    over = loudness(asked.after, p.held_out.floors)
+    if max((square for channel, square in over.items() if channel != "L"), default=0.0) > QUIET**2:
         return None
-    floor = float(np.median(loudness))
-    friction = uneven_friction(p.campaign.runs, floor, s.value("tau_l0"))
-    uneven = friction or uneven_drag(s, p.split.fitted, p.split.held_out, floor)
-    if uneven is None:
-        return None
+    floor = float(np.median([x for (_, c), x in asked.floors.items() if c == "L"]))
+    drag = uneven_drag(asked.s, p.split.fitted, p.split.held_out, floor, "L")
+    return None if drag is None else _one_way(drag, asked.sized)
+
+
+def _one_way(uneven: UnevenFriction | UnevenDrag, names: tuple[str, ...]) -> Conclusion:
     verdict = Verdict(Status.UNKNOWN, names, (), "direction", None, None, uneven.sentence())
     return Conclusion(verdict, None, ("direction",), along("direction"))
 
