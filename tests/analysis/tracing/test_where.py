@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.rest.in_the_floor import as_runs_begin
 from rig.analysis.tracing.selection import where
 from rig.analysis.tracing.selection.where import _in_the_floor_too as in_the_floor_too
 from rig.analysis.tracing.selection.where import _left as left
@@ -23,6 +24,25 @@ def test_what_settles_in_every_run_is_no_wave_that_comes_back_with_the_runs(
     settles = Home("time", "A", share, first=first)
     p: Any = SimpleNamespace(eq=None)
     assert in_the_floor_too(p, [settles], {}, {}, {}) == ([wave, settles] if waves else [settles])
+
+
+@pytest.mark.parametrize(
+    ("begun", "hz", "with_the_runs"),
+    [
+        ([308, 378, 448, 728, 798, 868], 1 / 69.5, True),
+        ([308, 378, 448, 728, 798, 868], 0.033, False),  # it goes round more than twice from one to the next
+        ([308, 388, 430, 728, 805, 868], 1 / 69.5, False),  # they begin when they like
+        ([308, 378, 448], 1 / 69.5, False),  # too few
+    ],
+)
+def test_a_wave_that_is_at_the_same_point_whenever_a_run_begins_is_what_runs_do(
+    begun: list[int], hz: float, with_the_runs: bool
+) -> None:
+    quiet = [1004, 1021]
+    eq: Any = SimpleNamespace(runs=[SimpleNamespace(start=float(t)) for t in (*begun, *quiet)])
+    e = {(i, "A"): np.full(9, 4.0 if i < len(begun) else 1.0) for i in range(len(eq.runs))}
+    wave = Home("time_periodic", "A", 0.6, frequency_hz=hz)
+    assert as_runs_begin(eq, e, dict.fromkeys(e, 1.0), wave) is with_the_runs
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,8 @@ BESIDE_ZEROS: Final = 0.05  # of the square of the floor: less than that zeros o
 SLOW_FORETOLD: Final = (
     0.6  # scattering friction had 0.54 and 0.57 (902 and 519 s); ten right ones of 6 to 98 s 0.66 and more
 )
+ONCE: Final = 0.1  # of a turn, by which a wave may miss it
+IN_STEP: Final = 0.9  # length of the mean of their unit vectors: a tenth of a turn about it
 ALIKE: Final = 1.5  # highest over lowest speed of runs that are told by each other
 
 SWINGS: Final[Sequence[Callable[[Rest], Array]]] = (
@@ -60,6 +62,22 @@ def in_the_floor(
     """
     found = [_in_channel(eq, fitted, unseen, floors, channel) for channel in WHOLE]
     return max((home for home in found if home is not None), key=lambda home: home.share, default=None)
+
+
+def as_runs_begin(eq: Equations, e: Mapping[Key, Array], floors: Mapping[Key, float], wave: Home) -> bool:
+    """Whether a `wave` goes once round between neighbours of the runs that have most of what is left, and is at the
+    same point whenever one begins: what each of them does anew does so too, and needs no clock (exam 94, case 30)."""
+    keys = [key for key in e if key[1] == wave.channel]
+    if len(keys) < FEWEST or not wave.frequency_hz:
+        return False
+    square = np.array([np.mean((e[key] / floors[key]) ** 2) for key in keys])
+    begun = np.array([eq.runs[key[0]].start for key in keys])
+    most = square > square.mean()
+    if np.sum(most) < FEWEST:
+        return False
+    apart = np.diff(np.sort(begun[most])).min()
+    at = np.average(np.exp(1j * TURN * wave.frequency_hz * begun[most]), weights=square[most])
+    return bool(abs(wave.frequency_hz * apart - 1.0) < ONCE and abs(at) > IN_STEP)
 
 
 def _in_channel(

@@ -11,7 +11,7 @@ from rig.analysis.tracing.free_form.along_another import along_another
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.hidden_order import hidden_order
 from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
-from rig.analysis.tracing.rest.in_the_floor import in_the_floor
+from rig.analysis.tracing.rest.in_the_floor import as_runs_begin, in_the_floor
 from rig.analysis.tracing.rest.joined import loudness
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.thresholds import LITTLE, QUIET
@@ -64,6 +64,8 @@ def _in_the_floor_too(
         wave = in_the_floor(p.eq, left, after, floors)
         if wave is None or not wave.frequency_hz or (where[0].first and where[0].share > wave.share):
             return where  # what settles anew in every run comes back with the runs
+        if as_runs_begin(p.eq, left, floors, wave):
+            return where
         return [wave, *where]
     if where[0].share < HALF:
         order = hidden_order(p.eq, left, after, floors)
