@@ -109,7 +109,11 @@ def _other(found: Findings, run: Source, motion: Motion, speed: Speed | None) ->
     elif turns < 0.01:
         _standstill(found, run, motion, speed)
     else:
-        found.sentence = f"The motor moved {360 * turns:.2f}°, less than a turn: nothing here is periodic in its angle."
+        from rig.analysis.kinematic_error.ratio import turns_per_turn
+        from rig.analysis.motion.mistaken import mistaken
+
+        why = mistaken(motion.ratio, turns_per_turn(motion)) or "nothing here is periodic in its angle"
+        found.sentence = f"The motor moved {360 * turns:.2f}°, less than a turn: {why}."
 
 
 def _friction(found: Findings, run: Source, motion: Motion, speed: Speed | None) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -78,7 +79,7 @@ def _left_out_alike(names: Sequence[str], why: str) -> str:
         return left_out(names[0], why)
     more = len(names) - FEW
     listed = f"{', '.join(names[:FEW])} and {more} more" if more > 0 else " and ".join(names)
-    return f"{listed} are left out: {why}"
+    return f"{listed} are left out: {re.sub('^its ', 'their ', why)}"
 
 
 def _experiments(runs: Sequence[Run], tell: Say) -> list[Run]:
@@ -93,8 +94,16 @@ def _experiments(runs: Sequence[Run], tell: Say) -> list[Run]:
     for why, names in out.items():
         tell(_left_out_alike(names, why))
     if not found:
-        raise DataError("no completed run of an experiment among these folders: nothing to identify from")
+        raise DataError(
+            "no completed run of an experiment among these folders, expected one whose manifest has a procedure such "
+            f"as constant_torque or kinematic_error: nothing to identify from{_why(out)}"
+        )
     return found
+
+
+def _why(out: Mapping[str, Sequence[str]]) -> str:
+    """Of the first of those that are left `out`, by the reason."""
+    return next((f" ({names[0]}: {why})" for why, names in out.items()), "")
 
 
 def _no_experiment(run: Run) -> str:

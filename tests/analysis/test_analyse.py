@@ -89,6 +89,14 @@ def test_a_procedure_without_an_analysis_of_its_own_says_so() -> None:
     assert "fourier_amplitude_2" in {e.name for e in result.estimates}
 
 
+def test_angles_taken_for_each_other_in_a_short_run_are_told_so() -> None:
+    columns = at_speed(rpm=20.0, seconds=30.0).columns
+    swapped = {**columns, "theta_m": columns["theta_l"], "theta_l": columns["theta_m"]}
+    result = analyse(MadeRun(swapped, {"procedure": "other", "gear": {"ratio": 50}}))
+    assert result.sentence.startswith("The motor moved 72.")
+    assert "less than a turn: θ_m and θ_l seem to be taken for each other" in result.sentence
+
+
 def test_too_few_rows_a_turn_is_said_and_not_fitted() -> None:
     t = np.arange(0, 10, 0.1)
     run = MadeRun({"t": t, "theta_m": 40.0 * t, "theta_l": 0.8 * t}, {"procedure": "constant_torque"})

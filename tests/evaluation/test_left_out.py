@@ -9,7 +9,7 @@ import pyarrow as pa
 import pytest
 
 from rig.analysis.tracing.runs.campaign import read_campaign
-from rig.core.errors import UsageError
+from rig.core.errors import DataError, UsageError
 from rig.evaluation.to_identify import open_runs, opened
 from rig.runfile.run import Run
 from tests.commands.made_run import made_run, rows
@@ -54,8 +54,15 @@ def test_what_is_left_out_for_the_same_reason_is_one_sentence(tmp_path: Path) ->
     good = made_run(tmp_path / "good")
     for several, who in ((checks, "weigh, lock-check and 2 more"), (checks[:2], "weigh and lock-check")):
         assert open_runs([*several, good], lambda text: None).said == (
-            f"{who} are left out: its procedure is no experiment (other)",
+            f"{who} are left out: their procedure is no experiment (other)",
         )
+
+
+def test_without_any_experiment_it_is_said_what_one_is(tmp_path: Path) -> None:
+    with pytest.raises(
+        DataError, match=r"a procedure such as constant_torque or .*\(jog: its procedure is no experiment"
+    ):
+        open_runs([made_run(tmp_path / "jog", {"procedure": "other"})], lambda text: None)
 
 
 def test_runs_of_two_loads_are_told_of(tmp_path: Path) -> None:

@@ -136,7 +136,7 @@ def test_it_goes_where_it_is_told(run: Run, kind: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", FORMATS)
 def test_a_place_that_cannot_be_written_is_a_sentence_and_leaves_nothing(run: Run, kind: str, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
-    with pytest.raises(UsageError, match=r"cannot write .*file/x: Not a directory; name another place with --to"):
+    with pytest.raises(UsageError, match=r"cannot write .*file/x: Not a directory; name another place with --out"):
         export(run, kind, tmp_path / "file" / "x")
     with pytest.raises(UsageError, match=r"cannot write .*: No such file or directory"):
         export(run, kind, tmp_path / "gone" / f"x{FORMATS[kind].suffix}")

@@ -74,7 +74,8 @@ def conclude(found: Findings, procedure: str, manifest: Mapping[str, Any]) -> Re
     """
     judged = judge(found.estimates, manifest.get("limits") or {})
     found.checks += judged.checks
-    verdict, sentence, estimates = judged.verdict, f"{found.sentence} {judged.unsettled}".strip(), found.estimates
+    said = (found.sentence, judged.outside, judged.unsettled)
+    verdict, sentence, estimates = judged.verdict, " ".join(filter(None, said)), found.estimates
     status = str(manifest.get("status", "completed"))
     if status not in ("completed", "imported"):
         reason = manifest.get("exit_reason")

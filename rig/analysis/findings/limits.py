@@ -29,6 +29,7 @@ class Judgement:
     verdict: Verdict  # MEASURED without any limit
     checks: tuple[Check, ...] = ()
     unsettled: str = ""  # what to do about the limits that settle nothing; "" where all do
+    outside: str = ""  # which figures are out of which limits; "" where none is
     limits: Mapping[str, str] = field(default_factory=dict)  # name of the figure → "Stiffness at least 7000 N·m/rad"
 
 
@@ -59,6 +60,7 @@ def judge(estimates: Sequence[Estimate], limits: Mapping[str, Any]) -> Judgement
         verdict,
         tuple(j.check for j in judged),
         " ".join(j.unsettled for j in judged if j.unsettled),
+        " ".join(j.check.sentence for j in judged if j.verdict is Verdict.FAIL),
         {name: j.limit for name, j in zip(asked, judged, strict=True)},
     )
 

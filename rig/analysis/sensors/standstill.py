@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,8 @@ OUTLIER = 5.0  # σ of the settled pieces
 STILL = 0.01  # turns of the motor: more is not a standstill
 MOST_LINES = 5  # per channel
 TEN = 10.0  # periods in the run: slower is drift, not a line
+SETTLES = 2.0  # s: a loop that lets go, and what swings after it, takes less
+CHANGED = 10.0  # times the noise of a channel, or its step: less is its drift
 SHAKES = 0.3  # of a channel's variance in one line: below, it is a peak in the noise
 CHANNELS = (
     ("theta_m", "Motor angle", "arcsec", 1 / ARCSEC),
@@ -154,6 +157,24 @@ def add_standstill(found: Findings, run: Source, motion: Motion) -> None:
     else:
         found.tables["lines_at_rest"] = lines
     found.sentence = "Noise at rest (rms): " + ", ".join(said) + "." + _shaking(lines)
+    if motion.t is not None and motion.t[first] - motion.t[0] > SETTLES:
+        found.sentence += _changed(run, known, first, float(motion.t[first] - motion.t[0]))
+
+
+def _changed(run: Source, known: Mapping[str, Array], first: int, after: float) -> str:
+    """Of a rig that came to rest so late that something may have moved it: what its channels said before, and say now.
+
+    `known`: (n,) by channel, of which rows `first` on count, `after` s from the start."""
+    changed = []
+    for name, label, unit, scale in CHANNELS:
+        if name not in known:
+            continue
+        before, since = known[name][:first], known[name][first:]
+        was, is_now = float(np.median(before)), float(np.median(since))
+        if abs(is_now - was) > CHANGED * max(float(since.std()), _count(run, name, known[name])):
+            changed.append(f"{label.lower()} {was * scale:.3g} → {is_now * scale:.3g} {unit}")
+    what = f" ({', '.join(changed)})" if changed else ""
+    return f" The rig was not at rest for the first {after:.1f} s{what}: all figures are of what came after."
 
 
 def _shaking(lines: list[dict[str, float | str]]) -> str:

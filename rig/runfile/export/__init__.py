@@ -71,7 +71,7 @@ def _target(run: Run, form: Format, target: Path | None) -> Path:
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UsageError(f"cannot write {target}: {error.strerror}; name another place with --to") from error
+        raise UsageError(f"cannot write {target}: {error.strerror}; name another place with --out") from error
     return target / name
 
 
@@ -84,12 +84,12 @@ def _in_place(path: Path) -> Iterator[Path]:
     except FileExistsError:
         raise UsageError(f"{path} exists already; nothing is overwritten") from None
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror}; name another place with --to") from error
+        raise UsageError(f"cannot write {path}: {error.strerror}; name another place with --out") from error
     try:
         yield part
         part.replace(path)
     except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror or error}; name another place with --to") from error
+        raise UsageError(f"cannot write {path}: {error.strerror or error}; name another place with --out") from error
     finally:
         part.unlink(missing_ok=True)
         if not path.stat().st_size:

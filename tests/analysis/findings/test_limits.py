@@ -95,3 +95,10 @@ def test_a_limit_that_cannot_be_judged_is_never_dropped_in_silence(limits: dict[
     assert judged.verdict is Verdict.INCONCLUSIVE
     assert words in judged.unsettled
     assert [c.passed for c in judged.checks] == [False]
+
+
+def test_which_limit_a_figure_is_out_of_is_told() -> None:
+    assert judge([FIGURE], {"swing": 60.0}).outside == (
+        "Swing 93 arcsec (91.4 to 94.6), limit at most 60 arcsec: the whole interval is outside."
+    )
+    assert not judge([FIGURE], {"swing": 100.0}).outside

@@ -11,8 +11,11 @@ from rig.analysis.sensors.standstill import settled_from
 from tests.analysis.synthetic import ARCSEC, MadeRun, count
 
 
-def at_rest(seed: int = 0, *, shake: float = 0.0, transient: float = 0.0, drift: float = 0.0) -> Result:
-    """Ten seconds: load angle with 0.8 arcsec of noise, torque with 0.05 N·m; a decaying transient [arcsec]."""
+def at_rest(
+    seed: int = 0, *, shake: float = 0.0, transient: float = 0.0, drift: float = 0.0, leant_on: float = 0.0
+) -> Result:
+    """Ten seconds: load angle with 0.8 arcsec of noise, torque with 0.05 N·m; a decaying transient [arcsec], a torque
+    [N·m] that is gone after 3.8 s."""
     rng = np.random.default_rng(seed)
     t = np.arange(0, 10, 1e-3)
     load = rng.normal(0, 0.8, t.size) + shake * np.sin(2 * np.pi * 8.0 * t)
@@ -21,7 +24,7 @@ def at_rest(seed: int = 0, *, shake: float = 0.0, transient: float = 0.0, drift:
         "t": t,
         "theta_m": np.zeros_like(t),
         "theta_l": count(load / ARCSEC, 900_000, 1e-7),
-        "tau_l": 0.3 + rng.normal(0, 0.05, t.size),
+        "tau_l": 0.3 + rng.normal(0, 0.05, t.size) + leant_on * (t < 3.8),
     }
     return analyse(MadeRun(columns, {"procedure": "standstill", "gear": {"ratio": 50}}))
 
@@ -100,3 +103,10 @@ def test_the_drift_of_an_angle_that_flips_by_single_counts_is_not_told_from_zero
         result = analyse(MadeRun({"t": t, "theta_m": theta}, {"procedure": "standstill", "gear": {"ratio": 50}}))
         low, high = figures(result)["drift_theta_m"].ci95
         assert low <= 0.0 <= high
+
+
+def test_who_leans_on_the_rig_for_a_while_is_told_of_it() -> None:
+    result = at_rest(leant_on=3.0)
+    assert "The rig was not at rest for the first 3.8 s (shaft torque 3.3 → 0.3" in result.sentence
+    assert abs(figures(result)["zero_tau_l"].value - 0.3) < 0.003
+    assert not any("not at rest" in at_rest(seed, transient=120.0).sentence for seed in range(4))

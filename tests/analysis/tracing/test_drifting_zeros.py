@@ -158,7 +158,8 @@ def test_a_drift_is_told_before_next_to_nothing_that_is_left_and_not_before_more
     """What of it falls within runs is above the floor too, and lives in memory (exam 78, case 36)."""
     rest = SimpleNamespace(told_where="something is left")
     drift = SimpleNamespace(told_where="time")
-    for step, said in (("_by_a_law", None), ("_drifting", drift), ("where_left", []), ("_with_a_remainder", rest)):
+    steps = {"_by_a_law": None, "_drifting": drift, "_loads_drag": None, "where_left": [], "_with_a_remainder": rest}
+    for step, said in steps.items():
         monkeypatch.setattr(verdict, step, lambda *of, said=said: said)
     asked: Any = SimpleNamespace(
         p=None, s=None, names=names, loud=True, worst=(left, left), floors={}, after={}, one=1.0

@@ -200,11 +200,11 @@ def _loads_drag(asked: Asked) -> Conclusion | None:
     """Nothing is above the floor but in the load's balance, where a drag that is more one way leaves what its runs'
     zeros do not take on; None where there is no such drag."""
     p = asked.p
-    over = loudness(asked.after, p.held_out.floors)
-    if max((square for channel, square in over.items() if channel != "L"), default=0.0) > QUIET**2:
+    loud = [channel for channel, square in loudness(asked.after, p.held_out.floors).items() if square > QUIET**2]
+    floors = [x for (_, c), x in asked.floors.items() if c == "L"]
+    if loud != ["L"] or not floors:
         return None
-    floor = float(np.median([x for (_, c), x in asked.floors.items() if c == "L"]))
-    drag = uneven_drag(asked.s, p.split.fitted, p.split.held_out, floor, "L")
+    drag = uneven_drag(asked.s, p.split.fitted, p.split.held_out, float(np.median(floors)), "L")
     return None if drag is None else _one_way(drag, asked.sized)
 
 
