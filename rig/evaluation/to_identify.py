@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -79,7 +78,7 @@ def _left_out_alike(names: Sequence[str], why: str) -> str:
         return left_out(names[0], why)
     more = len(names) - FEW
     listed = f"{', '.join(names[:FEW])} and {more} more" if more > 0 else " and ".join(names)
-    return f"{listed} are left out: {re.sub('^its ', 'their ', why)}"
+    return f"{listed} are left out: {why.replace('its ', 'their ', 1)}"
 
 
 def _experiments(runs: Sequence[Run], tell: Say) -> list[Run]:

@@ -31,10 +31,7 @@ POWERS: Final = (0.5, 1.0, 2.0)  # of a film between lip and shaft, of a fluid, 
 LEFT: Final = 0.4  # of what friction leaves of the unseen zeros, or a drift does
 PLAIN: Final = 3.0  # half widths of its interval, six standard errors
 LARGE: Final = 2.0  # floors of that torque: less matters to nobody
-WHAT: Final = {
-    "M": ("motor", 1e3, "mN·m"),
-    "L": ("load", 1.0, "N·m"),
-}  # by the channel, and the unit that it is told in
+WHAT: Final = {"M": ("motor", 1e3, "mN·m"), "L": ("load", 1.0, "N·m")}  # what a channel balances, and in which unit
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,7 @@ from rig.model.effect import Array
 MOST = 40_000  # rows that coordinates are tried on: of a bin in five hundred there are eighty
 BENT = 0.2  # of the excess, what a channel must keep beside a baseline of its own to be where the rest lives
 FOLLOWS = 0.25  # of what another coordinate leaves, what a step may leave that is said before it
-AS_MUCH = (
-    0.97  # of a share: with the speed itself, in runs at 12 and 30 rad/s, waves grow so that the square tells 0.95
-)
+AS_MUCH = 0.97  # of a share: of waves that grow as the speed, in runs at 12 and 30 rad/s, its square tells 0.95
 LEAST_WAY = 0.1  # of the rows at a speed, forth and back each: with fewer, single runs are all there is of one of them
 WITH_TIME = ("time", "temperature")
 
