@@ -109,7 +109,8 @@ def _no_experiment(run: Run) -> str:
     """Why nothing is identified from it; "" where something is."""
     if (status := run.manifest.get("status")) not in ("completed", "imported", None):
         return f"its status is {status}, and a run that came to its end is asked for"
-    return "its procedure is no experiment (other)" if run.procedure == "other" else ""
+    own = run.procedure == "other" and run.manifest.get("label")  # of this program's; another's may be anything
+    return "its procedure is no experiment (other)" if own else ""
 
 
 def _refuse_mixed(name: str, runs: Sequence[Run]) -> None:

@@ -50,6 +50,18 @@ def test_a_torque_in_another_unit_meets_no_limit_of_the_stiffness(shared: Path) 
     assert any("times the 7.16e+03 declared" in said for said in (in_mNm.sentence, *in_mNm.cannot))
 
 
+@pytest.mark.parametrize("name", ["slow_ke_1", "speed_200rpm_1"])
+def test_a_torque_that_would_wind_the_gear_up_further_than_it_is_may_be_in_another_unit(shared: Path, name: str) -> None:
+    run = Run.open(shared / "cases" / "open-1" / name)
+
+    def told(times: float) -> list[str]:
+        return [said for said in analyse(changed(run, {}, tau_l=times)).cannot if said.startswith("The unit of tau_l")]
+
+    assert not told(1.0)
+    (said,) = told(1000.0)
+    assert "would wind a gear of the declared K = " in said
+
+
 def test_the_unit_of_an_angle_is_told_by_its_step_by_the_declared_speed_and_by_what_no_motor_reaches() -> None:
     right = Turning(step=COUNT, count=COUNT, rpm=300.0, said_rpm=300.0, ratio=50.0)
     assert right.in_degrees is None

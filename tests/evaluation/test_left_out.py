@@ -34,7 +34,7 @@ def test_a_run_that_nothing_is_identified_from_is_named(tmp_path: Path) -> None:
     folders = [
         made_run(tmp_path / "good"),
         made_run(tmp_path / "cut", {"status": "stopped"}),
-        made_run(tmp_path / "jog", {"procedure": "other"}),
+        made_run(tmp_path / "jog", {"procedure": "other", "label": "jog"}),
         made_run(tmp_path / "still", table=rows().drop_columns(["theta_l"])),
     ]
     told: list[str] = []
@@ -48,9 +48,14 @@ def test_a_run_that_nothing_is_identified_from_is_named(tmp_path: Path) -> None:
     ]
 
 
+def test_a_run_of_another_program_counts_whatever_its_kind(tmp_path: Path) -> None:
+    opened = open_runs([made_run(tmp_path / "theirs", {"procedure": "other"})], lambda text: None)
+    assert ([r.name for r in opened.recordings], opened.said) == (["theirs"], ())
+
+
 def test_what_is_left_out_for_the_same_reason_is_one_sentence(tmp_path: Path) -> None:
     names = ("weigh", "lock-check", "sign-and-scale", "weigh-again")
-    checks = [made_run(tmp_path / name, {"procedure": "other"}) for name in names]
+    checks = [made_run(tmp_path / name, {"procedure": "other", "label": name}) for name in names]
     good = made_run(tmp_path / "good")
     for several, who in ((checks, "weigh, lock-check and 2 more"), (checks[:2], "weigh and lock-check")):
         assert open_runs([*several, good], lambda text: None).said == (
@@ -62,7 +67,7 @@ def test_without_any_experiment_it_is_said_what_one_is(tmp_path: Path) -> None:
     with pytest.raises(
         DataError, match=r"a procedure such as constant_torque or .*\(jog: its procedure is no experiment"
     ):
-        open_runs([made_run(tmp_path / "jog", {"procedure": "other"})], lambda text: None)
+        open_runs([made_run(tmp_path / "jog", {"procedure": "other", "label": "jog"})], lambda text: None)
 
 
 def test_runs_of_two_loads_are_told_of(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from rig.analysis.smoothness.measure import smoothness as smoothness_of
 from rig.analysis.turning.spectrum import add_orders
 from rig.analysis.turning.speed import add_speed_figures
 from rig.analysis.turning.torsion_words import add_torsion
-from rig.analysis.turning.units import unlikely_time, unlikely_torque, wrong_unit
+from rig.analysis.turning.units import unlikely_time, unlikely_torque, winds_too_far, wrong_unit
 from rig.analysis.turning.weight import other_weight
 from rig.core.kinds import Regime, regime_of
 from rig.core.units import TURN
@@ -93,13 +93,16 @@ def _with_load(
     tau_l = motion.pick(run.column("tau_l"))
     turns = turns_per_turn(motion)
     wrong = disagreement(motion, turns)
-    doubtful = "" if wrong else doubt(motion, tau_l, declared(run.declared, "K"))
+    K = declared(run.declared, "K")
+    doubtful = "" if wrong else doubt(motion, tau_l, K)
     agree = f"The encoders turn {turns:.5g} to 1, declared {motion.ratio:g}."
     found.checks.append(Check("ratio", not (wrong or doubtful), wrong or doubtful or agree))
     if wrong:
         found.sentence = "No kinematic error was computed."
         found.reject(wrong)
         return
+    if unit := winds_too_far(motion, tau_l, K):
+        found.cannot.append(unit)
     main = _kinematic_error(found, run, motion, strokes, slow)
     if doubtful:
         found.inconclusive, found.sentence = found.inconclusive or doubtful, f"{doubtful} {found.sentence}"

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from rig.analysis.findings.result import Array
+from rig.analysis.motion.declared import FAR
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.strokes import Stroke
 from rig.analysis.smoothness.measure import nominal_rpm
 from rig.core.numbers import number
 from rig.core.plausible import PERIOD, TORQUE
-from rig.core.units import DEG, TURN
+from rig.core.units import ARCSEC, DEG, TURN
 
 FACTORS = (
     (1 / DEG, "theta_m", "180/π: is theta_m in deg"),
@@ -68,3 +69,25 @@ def unlikely_torque(run: Source) -> Iterator[str]:
                 f"The unit of {name} may be another one: it reaches {peak:.4g} N·m, expected below {limit:g} N·m; "
                 "stiffness, friction and what hangs on the output go by it."
             )
+
+
+def winds_too_far(motion: Motion, tau_l: Array | None, K: float | None) -> str:
+    """That the gear would have to wind up further than it does, were `tau_l` [N·m] in its unit and `K` [N·m/rad] that
+    of this gear; "" where it need not, or where one of them is not known. θ̃ swings by more than the wind-up alone at
+    speed and with backlash, never by so much less."""
+    if tau_l is None or K is None or not np.isfinite(tau_l).any():
+        return ""
+    torque, error = (_swing(x) for x in (tau_l, motion.error_arcsec(0, motion.theta_m.size) * ARCSEC))
+    if torque < FAR * K * error:
+        return ""
+    return (
+        f"The unit of tau_l may be another one: it swings by {torque:.4g} N·m, which would wind a gear of the declared "
+        f"K = {K:.4g} N·m/rad up by {torque / K / DEG:.3g} deg, and θ̃ swings by {error / DEG:.3g} deg; stiffness and "
+        "what hangs on the output go by it."
+    )
+
+
+def _swing(x: Array) -> float:
+    """From the lowest hundredth of its values to the highest: a value read wrongly now and then is no swing."""
+    low, high = np.nanpercentile(x, (1, 99))
+    return float(high - low)
