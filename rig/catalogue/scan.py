@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -53,12 +53,13 @@ def runs(root: Path | str, filter: Filter = ALL, twice: Twice = passed_over) -> 
 
 
 def passing(
-    root: Path | str, filter: Filter = ALL, unread: Unread = passed_by, twice: Twice = passed_over
+    roots: Sequence[Path], filter: Filter = ALL, unread: Unread = passed_by, twice: Twice = passed_over
 ) -> Iterator[Row]:
-    """The same runs one by one, as they lie on disk; of none is more kept than who it is; `unread` is told of folders
-    that may not be looked into. Raises UsageError at once."""
-    _refuse_no_folder(root)
-    found = (_fresh(f"{folder}/{manifest.NAME}") for folder in _folders(str(root), unread))
+    """The same under any of `roots` one by one, as they lie on disk; of none is more kept than who it is; `unread` is
+    told of folders that may not be looked into. Raises UsageError at once."""
+    for root in roots:
+        _refuse_no_folder(root)
+    found = (_fresh(f"{folder}/{manifest.NAME}") for root in roots for folder in _folders(str(root), unread))
     rows = (Read(_now(row, about), about) for row, about in found)
     seen = Seen(twice)
     wanted = originals_first(one for one in rows if filter.passes(one.row))

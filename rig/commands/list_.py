@@ -1,10 +1,11 @@
-"""hdrig list: the runs in a folder, from their manifests alone."""
+"""hdrig list: the runs in folders, from their manifests alone."""
 
 from __future__ import annotations
 
 import argparse
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from rig.catalogue.filter import ALL, ORDERS, STATUSES, VERDICTS, asked
@@ -25,7 +26,7 @@ HEAD = (
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig list`."""
-    parser.add_argument("root", nargs="?", type=Path, default=Path("runs"), metavar="FOLDER", help="default: runs")
+    parser.add_argument("roots", nargs="*", type=Path, default=[Path("runs")], metavar="FOLDER", help="default: runs")
     parser.add_argument("--gear", default="", metavar="SERIAL", help="serial of the gear; * and ? stand for anything")
     parser.add_argument("--procedure", default="", metavar="NAME", help="as in hdrig run, for example kinematic-error")
     parser.add_argument("--verdict", default="", metavar="WORD", help=", ".join(VERDICTS))
@@ -44,23 +45,23 @@ def run(args: argparse.Namespace) -> int:
     line_of, tell = (_json, print) if args.json else (_line, say)
     count = 0
     # of each run nothing is kept but its line and who it is: years of runs take little more memory than a day's
-    found = passing(args.root, filter, say_unread, say_twice)
+    found = passing(args.roots, filter, say_unread, say_twice)
     for line in in_order(((filter.key(row), line_of(row)) for row in found), filter.reverse):
         if not count and not args.json:
             say(HEAD)
         tell(line)
         count += 1
     if not count and args.procedure:
-        _refuse_unknown(args.procedure, args.root)
+        _refuse_unknown(args.procedure, args.roots)
     if not count and not args.json:
-        print(f"no such runs in {args.root}")
+        print(f"no such runs in {', '.join(map(str, args.roots))}")
     return 0
 
 
-def _refuse_unknown(procedure: str, root: Path) -> None:
-    """Raises UsageError when no procedure, and no run below `root`, is called so: a run of somebody else may have any
+def _refuse_unknown(procedure: str, roots: Sequence[Path]) -> None:
+    """Raises UsageError when no procedure, and no run below `roots`, is called so: a run of somebody else may have any
     name, so that it is looked for among them first."""
-    there = {row.procedure for row in passing(root, ALL) if row.procedure}
+    there = {row.procedure for row in passing(roots, ALL) if row.procedure}
     known = {name.replace("_", "-") for name in (*CATALOGUE, *KINDS, *there)}
     if (said := procedure.replace("_", "-")) not in known:
         raise UsageError(f"there is no procedure '{procedure}'; {nearest(said, known)}")

@@ -31,7 +31,7 @@ Manifest = dict[str, Any]
 
 
 class Damaged(UsageError):
-    """A manifest that holds no JSON: empty, cut short or overwritten."""
+    """A manifest that holds no JSON, or no object: empty, cut short or overwritten."""
 
     def __init__(self, path: Path, what: str, said: str = "") -> None:
         anew = "hdrig recover makes it anew where bench.toml and samples lie beside it"
@@ -50,7 +50,7 @@ def read(folder: Path) -> Manifest:
     """The manifest of `folder`; a null is as good as an absent key.
 
     Raises UsageError when there is none, it is JSON of another schema, or a key holds what it cannot; Damaged when it
-    is not JSON, Missing when there are samples and none.
+    is no object in JSON, Missing when there are samples and none.
     """
     path = folder / NAME
     try:
@@ -65,7 +65,7 @@ def read(folder: Path) -> Manifest:
         what = f"is not JSON: {error}" if path.stat().st_size else "is empty (0 bytes)"
         raise Damaged(path, what) from error
     if not isinstance(found, dict):
-        raise UsageError(f'{path} is {_kind(found)}, expected an object with schema "{SCHEMA}"')
+        raise Damaged(path, f'is {_kind(found)}, expected an object with schema "{SCHEMA}"')
     if found.get("schema") != SCHEMA:
         said = f"has schema {_short(found['schema'])}" if "schema" in found else "has no schema"
         raise UsageError(f'{path} {said}, expected "{SCHEMA}"')

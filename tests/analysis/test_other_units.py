@@ -51,7 +51,9 @@ def test_a_torque_in_another_unit_meets_no_limit_of_the_stiffness(shared: Path) 
 
 
 @pytest.mark.parametrize("name", ["slow_ke_1", "speed_200rpm_1"])
-def test_a_torque_that_would_wind_the_gear_up_further_than_it_is_may_be_in_another_unit(shared: Path, name: str) -> None:
+def test_a_torque_that_would_wind_the_gear_up_further_than_it_is_may_be_in_another_unit(
+    shared: Path, name: str
+) -> None:
     run = Run.open(shared / "cases" / "open-1" / name)
 
     def told(times: float) -> list[str]:

@@ -70,6 +70,17 @@ def test_a_run_folder_lists_itself_as_for_every_other_verb(tmp_path: Path, capsy
     assert str(folder) in capsys.readouterr().out
 
 
+def test_several_folders_are_one_list_in_order(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    days = [run(tmp_path / name, day) for name, day in (("a", "2026-11-21"), ("b", "2026-11-20"))]
+    assert main(["list", str(tmp_path / "a"), str(tmp_path / "b"), "--json"]) == 0
+    assert [json.loads(line)["path"] for line in capsys.readouterr().out.splitlines()] == [str(d) for d in days[::-1]]
+    assert main(["list", str(tmp_path / "a"), str(tmp_path / "c")]) == 2
+    assert capsys.readouterr() == (
+        "",
+        f"hdrig: there is no folder {tmp_path / 'c'}; give the folder that holds the runs\n",
+    )
+
+
 def test_a_procedure_there_is_not_is_refused_with_what_there_is(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
