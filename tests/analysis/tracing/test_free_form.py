@@ -69,6 +69,16 @@ def test_every_form_is_finite_and_has_as_many_columns_at_all_its_ports(coordinat
 
 
 @pytest.mark.parametrize("coordinate", DRAWN)
+def test_a_part_of_a_run_remembers_what_was_before_it(coordinate: str) -> None:
+    rows = np.r_[200:260, 500:900]
+    part = FORTH_AND_BACK.part(rows)
+    for form in forms(coordinate, Seen(FORTH_AND_BACK), 1):
+        whole, cut = (form.columns(s, ()) for s in (FORTH_AND_BACK, part))
+        for port, z in cut.items():
+            np.testing.assert_array_equal(z, whole[port][rows], form.words)
+
+
+@pytest.mark.parametrize("coordinate", DRAWN)
 def test_finer_ones_are_the_same_forms_with_more_columns(coordinate: str) -> None:
     coarse, fine = (forms(coordinate, Seen(FORTH_AND_BACK), finer) for finer in (1, 2))
     assert [form.words for form in coarse] == [form.words for form in fine]

@@ -29,10 +29,10 @@ def found(
     rows = {(i, c) for i in range(len(runs)) for c in ("A", channel)}
     eq = SimpleNamespace(runs=runs, rows=rows)
     s: Any = SimpleNamespace(design=SimpleNamespace(eq=eq), value=lambda name: COMPLIANCE)
-    monkeypatch.setattr(module, "offset", lambda _, run, channel: zeros[run])
-    monkeypatch.setattr(
-        offsets, "zero", lambda _, run, channel: -sensor * COMPLIANCE * zeros[run] if channel == "A" else zeros[run]
-    )
+    for where in (module, offsets):
+        monkeypatch.setattr(
+            where, "zero", lambda _, run, channel: -sensor * COMPLIANCE * zeros[run] if channel == "A" else zeros[run]
+        )
     unseen = range(2, len(runs), 3)
     return uneven_drag(s, [i for i in range(len(runs)) if i not in unseen], unseen, FLOOR, channel)
 

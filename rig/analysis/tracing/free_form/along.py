@@ -14,6 +14,7 @@ from rig.analysis.tracing.free_form.factors import (
     load_waves,
     motor_waves,
     past_torque,
+    remembering,
     times,
     turned,
     turned_each_way,
@@ -26,11 +27,10 @@ ALONE: Final = 20  # orders of an angle by itself, the same
 
 
 class Along(NamedTuple):
-    """A factor, what it runs along in words, whether it remembers, and whether it is a surface over two coordinates."""
+    """A factor, what it runs along in words, and whether it is a surface over two coordinates."""
 
     factor: Factor
     words: str
-    state: bool = False
     surface: bool = False
 
 
@@ -66,13 +66,13 @@ def along(coordinate: str, seen: Ranges, finer: int) -> Iterator[Along]:
         case "load_angle":
             yield Along(lambda s: load_waves(s, ALONE * finer), "waves of the output's angle")
         case "time":
-            yield Along(lambda s: began(s, finer), "what wears off in the time since each run began", True)
+            yield Along(remembering(began, finer), "what wears off in the time since each run began")
         case "memory":
             back = "what wears off on the way since it turned back"
-            yield Along(lambda s: turned(s, finer, False), back, True)
-            yield Along(lambda s: turned(s, finer, True), f"{back} or began", True)
-            yield Along(lambda s: turned_each_way(s, finer), f"{back}, another each way", True)
-            yield Along(past_torque, "what the torque has been", True)
+            yield Along(remembering(turned, finer, False), back)
+            yield Along(remembering(turned, finer, True), f"{back} or began")
+            yield Along(remembering(turned_each_way, finer), f"{back}, another each way")
+            yield Along(remembering(past_torque), "what the torque has been")
         case "direction":
             yield Along(lambda s: s.way[:, None], "the direction")
     if hatted := HATTED.get(coordinate):

@@ -77,6 +77,16 @@ def _gone(x: Array, reaches: tuple[float, ...], finer: int) -> Array:
     return np.asarray(np.exp(-x[:, None] / between))
 
 
+def remembering(of: Callable[..., Array], *by: float) -> Factor:
+    """`of` a piece, by those numbers, where each row depends on those before it: made of the whole run that the piece
+    is cut from, and kept, for dozens of forms run along it at one place after the other."""
+
+    def factor(s: Signals) -> Array:
+        return s.lately(of.__name__, by, lambda: of(s, *by) if s.cut is None else s.cut.of(of(s.cut.whole, *by)))
+
+    return factor
+
+
 def past_torque(s: Signals) -> Array:
     """What the torque through the gear has been: plays and followers of it, N·m, (n, k)."""
     torque, run = known(s.torque), np.zeros(s.t.size)

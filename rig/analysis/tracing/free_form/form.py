@@ -12,12 +12,11 @@ from rig.model.effect import Array, Port, Reach, Shape, Signals
 
 @dataclass(frozen=True)
 class FreeForm(Nameless):
-    """Columns made by `acting`; `words` say where it acts and along what. `state`: whether a row depends on more than
-    itself. `wants`: channels without which it would foretell what it is made of. `surface`: over two coordinates."""
+    """Columns made by `acting`; `words` say where it acts and along what. `wants`: channels without which it would
+    foretell what it is made of. `surface`: over two coordinates."""
 
     words: str
     acting: Callable[[Signals], Mapping[Port, Array]]
-    state: bool = False
     wants: frozenset[str] = frozenset()
     surface: bool = False
 
@@ -28,10 +27,6 @@ class FreeForm(Nameless):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where what it wants was read."""
         return ((),) if self.wants <= reach.has else ()
-
-    def has_state(self) -> bool:
-        """Whether it remembers."""
-        return self.state
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """As they are made."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import ORDERS
 from rig.analysis.tracing.free_form.along import ALONE, Along, along
-from rig.analysis.tracing.free_form.factors import known, load_waves, motor_waves, times
+from rig.analysis.tracing.free_form.factors import known, load_waves, motor_waves, remembering, times
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.analysis.tracing.nameless.loops import way_of_the_output
@@ -22,14 +22,12 @@ SENSOR: Final = frozenset({"tau_l"})  # without it the torque is made of what it
 
 
 class At(NamedTuple):
-    """A port, what is there in words, what a factor is multiplied by there (n,), the channels that takes, and whether
-    it remembers."""
+    """A port, what is there in words, what a factor is multiplied by there (n,), and the channels that takes."""
 
     port: Port
     words: str
     by: Callable[[Signals], Array]
     wants: frozenset[str]
-    state: bool = False
 
     def times(self, x: Array, s: Signals) -> dict[Port, Array]:
         """Columns (n, k) there."""
@@ -69,9 +67,8 @@ PLACES: Final = (
     At(
         Port.READS_TAU_L,
         f"{READING}, by the direction of the output",
-        lambda s: way_of_the_output(s)[:, 0],
+        lambda s: remembering(way_of_the_output)(s)[:, 0],
         ANGLES | SENSOR,
-        True,
     ),
     At(Port.READS_TAU_L, f"{READING}, times the torque", _torque, ANGLES | SENSOR),
     At(Port.READS_TAU_M, "the motor's torque as told, times itself", lambda s: s.tau_m, MOTOR | SENSOR),
@@ -92,8 +89,7 @@ def forms(coordinate: str, seen: Ranges, finer: int) -> list[FreeForm]:
 
 def _form(at: At, way: Along) -> FreeForm:
     """The factor there."""
-    state = way.state or at.state
-    return FreeForm(f"{at.words}: {way.words}", lambda s: at.times(way.factor(s), s), state, at.wants, way.surface)
+    return FreeForm(f"{at.words}: {way.words}", lambda s: at.times(way.factor(s), s), at.wants, way.surface)
 
 
 def _waves_of_the_motor(way: Along, last: int) -> list[FreeForm]:
@@ -106,18 +102,16 @@ def _waves_of_the_motor(way: Along, last: int) -> list[FreeForm]:
 
     def there(at: At) -> FreeForm:
         words = f"{at.words}: waves of the motor's angle, others with {way.words}"
-        return FreeForm(
-            words, lambda s: at.times(times(motor_waves(s, 1, last), way.factor(s)), s), way.state, at.wants
-        )
+        return FreeForm(words, lambda s: at.times(times(motor_waves(s, 1, last), way.factor(s)), s), at.wants)
 
-    whole = FreeForm(f"the kinematic error, another with {way.words}", error, way.state, ANGLES)
+    whole = FreeForm(f"the kinematic error, another with {way.words}", error, ANGLES)
     return [whole, there(PUSHED), there(GAUGES)]
 
 
 def _waves_of_the_output(at: At, way: Along, last: int) -> FreeForm:
     """Waves of the output's angle that are others along the coordinate."""
     words = f"{at.words}: waves of the output's angle, others with {way.words}"
-    return FreeForm(words, lambda s: at.times(times(load_waves(s, last), way.factor(s)), s), way.state, at.wants)
+    return FreeForm(words, lambda s: at.times(times(load_waves(s, last), way.factor(s)), s), at.wants)
 
 
 def _turned_round(last: int) -> FreeForm:

@@ -15,7 +15,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import by_the_torque_sensor, offset
+from rig.analysis.tracing.floor.offsets import by_the_torque_sensor, zero
 from rig.analysis.tracing.rest.drifting_zeros import foretold
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.quantiles import Z95
@@ -72,7 +72,7 @@ def uneven_drag(
     if min(np.sum(fast & (speed > 0)), np.sum(fast & (speed < 0))) < EACH_WAY:
         return None
     begun, after = (np.array([eq.runs[i].start for i in runs]) for runs in (mine, others))
-    zeros, wanted = (np.array([offset(s, i, channel) for i in runs]) for runs in (mine, others))
+    zeros, wanted = (np.array([zero(s, i, channel) for i in runs]) for runs in (mine, others))
     plain, there = _friction(speed), _friction(later)
     fastest = np.abs(speed).max()
     before = _left(plain, there, zeros, wanted)
