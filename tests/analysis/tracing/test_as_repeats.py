@@ -11,6 +11,7 @@ import pytest
 from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.analysis.tracing.selection import as_repeats as module
 from rig.analysis.tracing.selection.as_repeats import as_repeats
+from rig.analysis.tracing.selection.done import Without
 from rig.analysis.tracing.selection.score import HeldOutScore
 
 CONDITIONS, ROWS = 12, 1000
@@ -65,7 +66,10 @@ def said(
     keys: Any = SimpleNamespace(floors=dict.fromkeys(held.y, 1.0), seen=dict.fromkeys(fitted.y, 1.0))
     whole: Any = SimpleNamespace(x="with", design=fitted)
     rest: Any = SimpleNamespace(x="without")
-    return as_repeats(whole, rest, held, keys)
+    seen, unseen = (
+        Without(whole, rest, d, *({k: d.residual(k, s.x) for k in d.y} for s in (whole, rest))) for d in (fitted, held)
+    )
+    return as_repeats(seen, unseen, keys)
 
 
 def test_sizes_that_wander_as_much_between_repeats_are_one_size(rng: np.random.Generator) -> None:

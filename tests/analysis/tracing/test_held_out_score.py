@@ -11,6 +11,7 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.selection import score as held_out_score
+from rig.analysis.tracing.selection.done import Without
 from rig.analysis.tracing.selection.elimination import unresolved
 from rig.analysis.tracing.selection.score import HeldOutScore, Unsteadiness, overall, unsteadiness
 from rig.model.effect import Parameter
@@ -34,10 +35,7 @@ def solved(
     e = {k: (true[k] - 1.0) * f[k] + noise * rng.standard_normal(4000) for k in KEYS}
     mine, again = ({k: spoilt * rng.standard_normal(4000) for k in KEYS} for _ in range(2))
     f, e = {k: f[k] + mine[k] for k in KEYS}, {k: e[k] - mine[k] for k in KEYS}
-    left = {"with": e, "without": {k: e[k] + f[k] for k in KEYS}}
     design: Any = SimpleNamespace(
-        y=dict.fromkeys(KEYS),
-        residual=lambda key, which: left[which][key],
         eq=SimpleNamespace(
             noise=SimpleNamespace(kappa={"M": 1.0}), runs=[SimpleNamespace(procedure="speed") for _ in KEYS]
         ),
@@ -46,7 +44,8 @@ def solved(
     )
     whole: Any = SimpleNamespace(x="with", design=design)
     rest: Any = SimpleNamespace(x="without")
-    return unsteadiness(whole, rest, design, dict.fromkeys(KEYS, 1.0), parts)
+    one = Without(whole, rest, design, e, {k: e[k] + f[k] for k in KEYS})
+    return unsteadiness(one, dict.fromkeys(KEYS, 1.0), parts)
 
 
 def test_the_same_size_everywhere_is_steady_whatever_the_noise(rng: np.random.Generator) -> None:
@@ -162,11 +161,16 @@ def test_a_term_that_does_nothing_on_unseen_runs_has_no_share(monkeypatch: pytes
     key = (0, "A")
     part = SimpleNamespace(at=np.array([7]))
     d = SimpleNamespace(
-        y={key: np.zeros(9)}, parts={key: (part,)}, terms=(SimpleNamespace(name="gap"),), place=lambda i: slice(7, 8)
+        y={key: np.zeros(9)},
+        parts={key: (part,)},
+        terms=(SimpleNamespace(name="gap"),),
+        place=lambda i: slice(7, 8),
+        residual=lambda key, x: np.ones((9, x.shape[1])),
     )
-    at = SimpleNamespace(floors={key: 1.0}, residuals=lambda s, d: {key: np.ones(9)})
+    s = SimpleNamespace(x=np.zeros(8), design=d)
+    at = SimpleNamespace(floors={key: 1.0}, residuals=lambda s, d, left=None: {key: np.ones(9)})
     monkeypatch.setattr(held_out_score, "without", lambda s, mine: s)
-    found = held_out_score.score(cast(Any, None), cast(Any, d), cast(Any, at), {key: np.ones(9)}, "gap")
+    (found,) = held_out_score.scores(cast(Any, s), cast(Any, d), cast(Any, at))
     assert (found.share, found.size, found.ground) == (0.0, 0.0, ())
     assert not found.named
 

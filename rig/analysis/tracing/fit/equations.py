@@ -70,7 +70,7 @@ class Bare:
     local: Array | None = None
 
     def times(self, c: Array) -> Array:
-        """Their sum with coefficients `c` (k,), (n,)."""
+        """Their sum with coefficients `c` (k,) or (k, m): (n,) or (n, m)."""
         return self._apart(self.x @ c if self.less is None else self.x @ c - self.less @ c)
 
     def onto(self, v: Array) -> Array:

@@ -72,8 +72,8 @@ class Design:
         return slice(start, start + self.widths[term])
 
     def residual(self, key: Key, x: Array) -> Array:
-        """What coefficients `x` (p,) leave in a block, (n,)."""
-        e = self.y[key]
+        """What coefficients `x` (p,) or (p, m) leave in a block, (n,) or (n, m)."""
+        e = self.y[key] if x.ndim == 1 else self.y[key][:, None]
         for part in self.parts[key]:
             e = e - part.z.times(x[part.at])
         return e

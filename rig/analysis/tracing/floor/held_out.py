@@ -37,10 +37,12 @@ class HeldOut:
     calm: bool = False  # the baseline alone is at the floor
     rubbing: Mapping[Key, Rubbing] = field(default_factory=dict)  # of the blocks in `rubs` that are no reversals
 
-    def residuals(self, s: Solution, d: Design) -> dict[Key, Array]:
+    def residuals(self, s: Solution, d: Design, left: Mapping[Key, Array] | None = None) -> dict[Key, Array]:
         """Of a solution on the held-out design `d`; of lock tests without what a gain's tolerance makes along T, nor
-        what is not known of a kinematic error that nobody read, nor of the inertia where the motor turns back."""
-        e = {key: self._beside_gain(key, d.residual(key, s.x), d) for key in d.y}
+        what is not known of a kinematic error that nobody read, nor of the inertia where the motor turns back. `left`
+        is what the solution leaves there, if that is known."""
+        left = left or {key: d.residual(key, s.x) for key in d.y}
+        e = {key: self._beside_gain(key, left[key], d) for key in d.y}
         if inferred := self.inferred & e.keys():
             known = scatter(s)
             e |= {key: beside(e[key], d, key, known, self.floors[key]) for key in inferred}

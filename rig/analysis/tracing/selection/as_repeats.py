@@ -14,12 +14,11 @@ import numpy as np
 from scipy.special import fdtrc
 
 from rig.analysis.tracing.fit.channels import CHANNELS
-from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.runs.alike import alike
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.runs.recording import Recording
-from rig.analysis.tracing.selection.done import done, noise_in
+from rig.analysis.tracing.selection.done import Without, done, noise_in
 from rig.analysis.tracing.thresholds import BY_CHANCE, FAINT, FAIR, FREE, MOSTLY, OF_ONE_SIZE, PLAIN_AMONG_REPEATS
 
 
@@ -44,11 +43,11 @@ class Shown:
     conditions: list[Condition] = field(default_factory=list)
 
 
-def as_repeats(s: Solution, rest: Solution, d: Design, at: HeldOut) -> bool:
-    """Whether an effect, `rest` being the fit without it, is plainly there beside what repeats differ by, wants sizes
-    that differ between conditions by no more than repeats do, and one size in runs seen and unseen (of `d`). False
-    where too few runs were repeated to say, in the channels it does most of its work in."""
-    shown = _shown(s, rest, d, at)
+def as_repeats(seen: Without, unseen: Without, at: HeldOut) -> bool:
+    """Whether an effect is plainly there beside what repeats differ by, wants sizes that differ between conditions by
+    no more than repeats do, and one size in runs seen and unseen. False where too few runs were repeated to say, in the
+    channels it does most of its work in."""
+    shown = _shown(seen, unseen, at)
     total = sum(channel.own for channel in shown)
     if not total:
         return False
@@ -61,12 +60,13 @@ def as_repeats(s: Solution, rest: Solution, d: Design, at: HeldOut) -> bool:
     return plain > PLAIN_AMONG_REPEATS and all(_is_one_size(c, n) for c, n in zip(known, noise, strict=True))
 
 
-def _shown(s: Solution, rest: Solution, d: Design, at: HeldOut) -> list[Shown]:
-    shown = {c: Shown(d.eq.noise.kappa[c]) for c in CHANNELS if c in d.eq.noise.kappa}
-    noise = noise_in(s, rest)
-    for design, floors, unseen in ((d, at.floors, True), (s.design, at.seen, False)):
-        for (run, c), _, f, e in done(s, rest, design, floors):
-            if c == "M" and design.eq.runs[run].locked:  # a motor that creeps against a spring sticks and slips
+def _shown(seen: Without, unseen: Without, at: HeldOut) -> list[Shown]:
+    kappa = unseen.design.eq.noise.kappa
+    shown = {c: Shown(kappa[c]) for c in CHANNELS if c in kappa}
+    noise = noise_in(seen)
+    for one, floors in ((unseen, at.floors), (seen, at.seen)):
+        for (run, c), _, f, e in done(one, floors):
+            if c == "M" and one.design.eq.runs[run].locked:  # a motor that creeps against a spring sticks and slips
                 continue
             square, spoilt = (e.size / floors[run, c] ** 2 * x for x in noise((run, c)))
             own, along = float(f @ f) - square, float(f @ e) - spoilt
@@ -74,9 +74,9 @@ def _shown(s: Solution, rest: Solution, d: Design, at: HeldOut) -> list[Shown]:
                 continue
             channel = shown[c]
             channel.own += own
-            channel.unseen += own if unseen else 0.0
-            channel.left += along if unseen else 0.0
-            _condition(channel.conditions, design.eq.runs[run]).wanted.append(along / np.sqrt(own))
+            channel.unseen += own if one is unseen else 0.0
+            channel.left += along if one is unseen else 0.0
+            _condition(channel.conditions, one.design.eq.runs[run]).wanted.append(along / np.sqrt(own))
     return list(shown.values())
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, without
 from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.selection.as_repeats import as_repeats
-from rig.analysis.tracing.selection.done import done, noise_in
+from rig.analysis.tracing.selection.done import Without, done, noise_in
 from rig.analysis.tracing.thresholds import (
     ABOUT,
     ALL,
@@ -113,16 +113,18 @@ class HeldOutScore:
 
 def scores(s: Solution, d: Design, at: HeldOut) -> list[HeldOutScore]:
     """Every effect in the model, scored by taking it away."""
+    names = list(dict.fromkeys(t.name for t in d.terms))
+    rests = [without(s, [i for i, t in enumerate(d.terms) if t.name == name]) for name in names]
     whole = at.residuals(s, d)
-    return [score(s, d, at, whole, name) for name in dict.fromkeys(t.name for t in d.terms)]
+    ones = zip(names, _taken_away(s, rests, s.design), _taken_away(s, rests, d), strict=True)
+    return [_score(name, seen, unseen, at, whole) for name, seen, unseen in ones]
 
 
-def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name: str) -> HeldOutScore:
+def _score(name: str, seen: Without, unseen: Without, at: HeldOut, whole: Mapping[Key, Array]) -> HeldOutScore:
     """One effect: the others are fitted again without it."""
-    mine = [i for i, t in enumerate(d.terms) if t.name == name]
-    rest = without(s, mine)
-    bare = at.residuals(rest, d)
-    places = {int(d.place(i).start) for i in mine}
+    d = unseen.design
+    bare = at.residuals(unseen.rest, d, unseen.bare)
+    places = {int(d.place(i).start) for i, t in enumerate(d.terms) if t.name == name}
     size: dict[Key, float] = {}
     for key in d.y:
         if any(int(part.at[0]) in places for part in d.parts[key]):
@@ -137,10 +139,10 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
     share = (before - after) / max(before - n, 0.02 * n)
     own = sum(size[key] ** 2 * whole[key].size for key in ground)
     true = float((before - after) / own)
-    held, seen = unsteadiness(s, rest, d, at.floors), unsteadiness(s, rest, s.design, at.seen)
-    unsteady, apart = max(held.whole, seen.whole), max(held.apart, seen.apart)
-    alone = len({run for run, _ in s.design.y}) < SEVERAL
-    stretched, shown = _in_stretches(s, rest, at.seen) if alone else (0.0, seen.shown)
+    held, fitted = unsteadiness(unseen, at.floors), unsteadiness(seen, at.seen)
+    unsteady, apart = max(held.whole, fitted.whole), max(held.apart, fitted.apart)
+    alone = len({run for run, _ in seen.design.y}) < SEVERAL
+    stretched, shown = _in_stretches(seen, at.seen) if alone else (0.0, fitted.shown)
     # at reversals stands what no effect that acts while the motor turns can be held to
     acts = [[k for k in size if k[1] == c] for c in CHANNELS if c != "R" or {"R"} == {k[1] for k in size}]
     return HeldOutScore(
@@ -157,9 +159,18 @@ def score(s: Solution, d: Design, at: HeldOut, whole: Mapping[Key, Array], name:
         overall({key: r**2 * whole[key].size for key, r in size.items()}, d),
         shown,
         stretched,
-        (at.calm or not at.loud(whole, MISSING)) and as_repeats(s, rest, d, at),
-        seen.most,
+        (at.calm or not at.loud(whole, MISSING)) and as_repeats(seen, unseen, at),
+        fitted.most,
     )
+
+
+def _taken_away(s: Solution, rests: Sequence[Solution], d: Design) -> list[Without]:
+    """Each effect, `rests` being the fits without one. What they leave in a block is made by one product: a matrix
+    takes longer to read than to multiply."""
+    x = np.stack([s.x, *(rest.x for rest in rests)], 1)
+    made = {key: np.ascontiguousarray(d.residual(key, x).T) for key in d.y}
+    left, *bare = ({key: e[i] for key, e in made.items()} for i in range(1 + len(rests)))
+    return [Without(s, rest, d, left, one) for rest, one in zip(rests, bare, strict=True)]
 
 
 def overall(work: Mapping[Key, float], d: Design) -> float:
@@ -173,10 +184,10 @@ def overall(work: Mapping[Key, float], d: Design) -> float:
     return max(float(np.sqrt(max(square, 0.0) / rows)) for square, rows in squares)
 
 
-def _in_stretches(s: Solution, rest: Solution, floors: Mapping[Key, float]) -> tuple[float, int]:
+def _in_stretches(seen: Without, floors: Mapping[Key, float]) -> tuple[float, int]:
     """How much the size differs from stretch to stretch of one or two fitted runs, and how many show it: in one long
     log they are what several runs would be. Of all channels together: what is left in another one wanders."""
-    found = unsteadiness(s, rest, s.design, floors, STRETCHES)
+    found = unsteadiness(seen, floors, STRETCHES)
     return found.whole, found.shown
 
 
@@ -202,9 +213,8 @@ class Unsteadiness(NamedTuple):
     most: float
 
 
-def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, float], parts: int = 1) -> Unsteadiness:
-    """How much an effect's size differs from run to run. `rest` is the fit without the effect. With `parts`, of
-    stretches of each run instead.
+def unsteadiness(one: Without, floors: Mapping[Key, float], parts: int = 1) -> Unsteadiness:
+    """How much an effect's size differs from run to run; with `parts`, from stretch to stretch of each run.
 
     A block wants the size 1 + (f·e)/(f·f), f being what the effect does and e what is left with it. What only looks
     like an effect has its size from a compromise between runs; a real one has the same in each. Sensor noise is in
@@ -212,12 +222,12 @@ def unsteadiness(s: Solution, rest: Solution, d: Design, floors: Mapping[Key, fl
     """
     spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
     shown, most = set(), 0.0
-    noise = noise_in(s, rest)
-    for key, part, f, e in done(s, rest, d, floors, parts):
+    noise, kappa = noise_in(one), one.design.eq.noise.kappa
+    for key, part, f, e in done(one, floors, parts):
         square, along = (e.size / floors[key] ** 2 * x for x in noise(key))
         own = float(f @ f) - square
         if own > FAINT**2 * e.size:
-            chance = d.eq.noise.kappa[key[1]] * float(f @ f)
+            chance = kappa[key[1]] * float(f @ f)
             spread[key[1]] += ((float(f @ e) - along) ** 2 - chance) / own
             work[key[1]] += own
         if own > SMALLEST**2 * e.size:
