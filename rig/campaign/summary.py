@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rig.campaign import sentinels
 from rig.campaign.journal import Journal
@@ -20,7 +20,7 @@ def lines(journal: Journal) -> Iterator[str]:
     yield f"begun {book['started_utc'][:19]} UTC, {len(book['sessions'])} session(s), order seed {book['seed']}"
     yield ""
     for number, entry in enumerate(book["runs"], 1):
-        yield f"{number:4d}  {MARKS.get(entry['status'], entry['status']):11s} {told(entry)}"
+        yield f"{number:4d}  {_mark(entry):11s} {told(entry)}"
         told_of = entry.get("figure") if entry["status"] == "done" else entry["sentence"]
         if told_of:
             yield f"      {told_of}"
@@ -36,6 +36,12 @@ def lines(journal: Journal) -> Iterator[str]:
     for note in book["notes"]:
         yield note["text"]
     yield from sentinels.lines(journal)
+
+
+def _mark(entry: Mapping[str, object]) -> str:
+    """What became of a run, in a word or two: one that was stopped before its folder was made never began."""
+    status = str(entry["status"])
+    return "not begun" if status == "stopped" and not entry["run"] else MARKS.get(status, status)
 
 
 def told(entry: dict[str, object]) -> str:

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from rig.bench import read
+from rig.commands.options import seed_argument
 from rig.commands.perform import Job, perform
 from rig.commands.show.show import showing
 from rig.procedures.kinematic_error import KinematicError
@@ -14,7 +15,7 @@ from rig.session.observer import Observer
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig demo`."""
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the twin")
+    seed_argument(parser, default=1, help="seed of the twin")
     parser.add_argument("-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
 
 

@@ -19,12 +19,24 @@ def bench_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="change a number of the bench file for this run"
     )
-    parser.add_argument("--seed", type=int, metavar="N", help="seed of the twin, short for --set twin.seed=N")
+    seed_argument(parser, help="seed of the twin, short for --set twin.seed=N")
     parser.add_argument(
         "--clock", choices=["virtual", "wall"], help="virtual: as fast as it goes (twin only); wall: real time"
     )
     parser.add_argument("-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
     parser.add_argument("--note", default="", metavar="TEXT", help="kept in the run's manifest")
+
+
+def seed_argument(parser: argparse.ArgumentParser, **how: Any) -> None:
+    """--seed."""
+    parser.add_argument("--seed", type=_seed, metavar="N", **how)
+
+
+def _seed(text: str) -> int:
+    """Whole, from 0 on."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r}: expected a whole number, 0 or more")
+    return int(text)
 
 
 def show_argument(parser: argparse.ArgumentParser) -> None:

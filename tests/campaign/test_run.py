@@ -183,6 +183,14 @@ def test_where_the_plan_says_so_a_person_clears_the_fault_and_the_campaign_goes_
     assert any(note["text"].startswith("fault cleared by hand: a device reports") for note in journal.book["notes"])
 
 
+def test_a_run_that_was_stopped_before_it_had_a_folder_never_began(tmp_path: Path) -> None:
+    journal = new_journal(tmp_path, campaign(REST, REST), "virtual", [])
+    journal.end(0, "stopped", "stopped by the operator", None)
+    journal.end(1, "stopped", "stopped by the operator", journal.folder / "rest")
+    marks = [line[6:17].strip() for line in summary.lines(journal) if line[:4].strip().isdigit()]
+    assert marks == ["not begun", "stopped"]
+
+
 @pytest.mark.slow
 def test_a_skipped_run_is_not_made_and_says_who_skipped_it(tmp_path: Path) -> None:
     planned = campaign(LOADED, REST)

@@ -36,11 +36,11 @@ OTHER: Final = 0.05  # relative, of the gear: an inertia that ran away had gone 
 
 
 def searched(
-    p: Prepared, wanted: frozenset[str] = frozenset(), shown: Callable[[Solution], bool] | None = None
+    p: Prepared, wanted: frozenset[str] = frozenset(), shown: Callable[[Selected], bool] | None = None
 ) -> tuple[Selected, Found]:
     """What stands of all that was searched for, and the candidates of the library. Where only some names are `wanted`,
-    and the search brings none of them, or what is looked for is not `shown` beside what stands, nobody asks for what
-    else might stand: that takes minutes."""
+    and the search brings none of them, or what is looked for is not `shown` by what stands, nobody asks for what else
+    might stand: that takes minutes."""
     runs = p.split.fitted
     covered = replace(reach([p.eq.runs[i] for i in runs]), torque_noise=torque_noise(p.eq))
     start = fit(design(p.eq, (), runs))
@@ -83,7 +83,7 @@ def _selected(
     quiet: bool,
     calm: bool,
     wanted: frozenset[str],
-    shown: Callable[[Solution], bool] | None,
+    shown: Callable[[Selected], bool] | None,
     but: frozenset[str] = frozenset(),
 ) -> tuple[Selected, Found, Reach]:
     """What stands of a search through all `but` some effects, what it found, and what is covered by then."""
@@ -101,7 +101,7 @@ def _selected(
         return alone, Found(start, found.ranking), covered
     if warmer := _warmer(selected, found, runs, covered):
         return warmer, found, covered
-    asked = (not wanted or not wanted.isdisjoint(found.names)) and (shown is None or shown(selected.solution))
+    asked = (not wanted or not wanted.isdisjoint(found.names)) and (shown is None or shown(selected))
     if asked and (not quiet or selected.loud):  # friction of one speed is told by all runs, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):

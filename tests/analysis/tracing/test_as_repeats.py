@@ -24,7 +24,7 @@ def _said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "alike", lambda a, b: bool(a.said == b.said))
 
 
-def design(rng: np.random.Generator, sizes: list[tuple[int, str, float]], lone: bool = False) -> Any:
+def taken_away(rng: np.random.Generator, sizes: list[tuple[int, str, float]], lone: bool = False) -> Without:
     """Runs by condition, name and the size they want of an effect whose fitted size is 1; noise of a row: 1 floor. With
     a `lone` channel that one run of each condition has."""
     f = [rng.standard_normal(ROWS) for _ in sizes]
@@ -34,19 +34,18 @@ def design(rng: np.random.Generator, sizes: list[tuple[int, str, float]], lone: 
         for condition, name, _ in sizes
     ]
     once = [(i, "A") for i, run in enumerate(runs) if lone and run.name.endswith(".0")]
-    return SimpleNamespace(
-        y=dict.fromkeys([*((i, "M") for i in range(len(sizes))), *once]),
-        residual=lambda key, which: left[key[0]] + (f[key[0]] if which == "without" else 0.0),
-        eq=SimpleNamespace(noise=SimpleNamespace(kappa={"M": 1.0, "A": 1.0}), runs=runs),
-        noise={},
-    )
+    keys = [*((i, "M") for i in range(len(sizes))), *once]
+    eq = SimpleNamespace(noise=SimpleNamespace(kappa={"M": 1.0, "A": 1.0}), runs=runs)
+    design: Any = SimpleNamespace(eq=eq)
+    rest: Any = None
+    return Without(rest, design, {k: left[k[0]] for k in keys}, {k: left[k[0]] + f[k[0]] for k in keys}, {})
 
 
 def said(
     rng: np.random.Generator,
     wander: float,
     law: float = 0.0,
-    unseen: float = 1.0,
+    later: float = 1.0,
     repeats: int = 3,
     parts: bool = False,
     lone: bool = False,
@@ -61,15 +60,10 @@ def said(
     ]
     shown += [(LOCKED, f"lock.{r}", 1.0 + locked) for r in range(repeats) if locked]
     last = [one for k, one in enumerate(shown) if k % repeats == repeats - 1]
-    held = design(rng, [(c, name, size * unseen) for c, name, size in last], lone)
-    fitted = design(rng, [one for k, one in enumerate(shown) if k % repeats != repeats - 1 or repeats == 1], lone)
-    keys: Any = SimpleNamespace(floors=dict.fromkeys(held.y, 1.0), seen=dict.fromkeys(fitted.y, 1.0))
-    whole: Any = SimpleNamespace(x="with", design=fitted)
-    rest: Any = SimpleNamespace(x="without")
-    seen, unseen = (
-        Without(whole, rest, d, *({k: d.residual(k, s.x) for k in d.y} for s in (whole, rest))) for d in (fitted, held)
-    )
-    return as_repeats(seen, unseen, keys)
+    unseen = taken_away(rng, [(c, name, size * later) for c, name, size in last], lone)
+    seen = taken_away(rng, [one for k, one in enumerate(shown) if k % repeats != repeats - 1 or repeats == 1], lone)
+    at: Any = SimpleNamespace(floors=dict.fromkeys(unseen.left, 1.0), seen=dict.fromkeys(seen.left, 1.0))
+    return as_repeats(seen, unseen, at)
 
 
 def test_sizes_that_wander_as_much_between_repeats_are_one_size(rng: np.random.Generator) -> None:
@@ -81,7 +75,7 @@ def test_sizes_that_differ_between_conditions_alone_are_another_law(rng: np.rand
 
 
 def test_what_unseen_runs_want_in_another_size_is_another_law(rng: np.random.Generator) -> None:
-    assert not any(said(rng, 0.1, unseen=1.4) for _ in range(40))
+    assert not any(said(rng, 0.1, later=1.4) for _ in range(40))
 
 
 def test_what_repeats_differ_by_as_much_as_it_does_is_not_plainly_there(rng: np.random.Generator) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.selection import score as held_out_score
-from rig.analysis.tracing.selection.done import Without
+from rig.analysis.tracing.selection.done import Without, noise_in
 from rig.analysis.tracing.selection.elimination import unresolved
 from rig.analysis.tracing.selection.score import HeldOutScore, Unsteadiness, overall, unsteadiness
 from rig.model.effect import Parameter
@@ -40,11 +40,12 @@ def solved(
             noise=SimpleNamespace(kappa={"M": 1.0}), runs=[SimpleNamespace(procedure="speed") for _ in KEYS]
         ),
         noise=dict.fromkeys(KEYS[:2]),
-        noise_left=lambda key, which: -again[key] if which == "with" else np.zeros(4000),
+        noise_left=lambda key, x: -again[key][:, None] * x,
     )
-    whole: Any = SimpleNamespace(x="with", design=design)
-    rest: Any = SimpleNamespace(x="without")
-    one = Without(whole, rest, design, e, {k: e[k] + f[k] for k in KEYS})
+    whole: Any = SimpleNamespace(x=np.ones(1), design=design)
+    rest: Any = SimpleNamespace(x=np.zeros(1))
+    (made,) = noise_in(whole, [rest])
+    one = Without(rest, design, e, {k: e[k] + f[k] for k in KEYS}, made)
     return unsteadiness(one, dict.fromkeys(KEYS, 1.0), parts)
 
 
@@ -166,6 +167,7 @@ def test_a_term_that_does_nothing_on_unseen_runs_has_no_share(monkeypatch: pytes
         terms=(SimpleNamespace(name="gap"),),
         place=lambda i: slice(7, 8),
         residual=lambda key, x: np.ones((9, x.shape[1])),
+        noise={},
     )
     s = SimpleNamespace(x=np.zeros(8), design=d)
     at = SimpleNamespace(floors={key: 1.0}, residuals=lambda s, d, left=None: {key: np.ones(9)})

@@ -79,8 +79,8 @@ class Design:
         return e
 
     def noise_left(self, key: Key, x: Array) -> Array:
-        """What sensor noise does to that residual, (n,)."""
-        e = self.noise[key]
+        """What sensor noise does to that residual, of the same shape."""
+        e = self.noise[key] if x.ndim == 1 else self.noise[key][:, None]
         for part in self.parts[key]:
             if part.spoilt is not None:
                 e = e - part.spoilt.times(x[part.at])

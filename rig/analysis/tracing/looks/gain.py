@@ -37,7 +37,7 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     named = tuple(term for term in terms if term.name not in CONFOUNDERS)
     if not any(_is_a_gain(fit(design(p.eq, some, p.split.fitted))) for some in dict.fromkeys(((), named, terms))):
         return so_far, found
-    other, ranked = searched(p, shown=_is_a_gain)
+    other, ranked = searched(p, shown=lambda one: _is_a_gain(one.solution))
     one_in_the_other = so_far.names <= other.names or other.names <= so_far.names
     counts = _is_a_gain(other.solution) and one_in_the_other and not other.loud
     return (other, ranked) if counts else (so_far, found)

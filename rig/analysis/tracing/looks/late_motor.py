@@ -35,7 +35,7 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     p = prepare(looking(so_far.p.campaign, looks), hold_out)
     if not any(is_late(fit(design(p.eq, terms, p.split.fitted))) for terms in ((), so_far.solution.design.terms)):
         return so_far, found
-    other, ranked = searched(p, shown=is_late)
+    other, ranked = searched(p, shown=lambda one: is_late(one.solution))
     less = not other.loud or _left(other) < PLAIN_ENOUGH * _left(so_far)
     counts = is_late(other.solution) and so_far.names <= other.names and less
     return (other, ranked) if counts else (so_far, found)

@@ -31,6 +31,7 @@ from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
 
 WARMING: Final = ThermalFrictionDrift.name
 BY_SPEED: Final = frozenset({StribeckFriction.name, QuadraticDrag.name})
+TOLD: Final = BY_SPEED | {WARMING}  # what the look is for
 FEWEST: Final = 4  # pairs of repeats
 MANY: Final = 10  # runs that go one way: three numbers are their speed's, two the use's
 LEFT: Final = 0.5  # of what runs' friction differs by beside their speed: of one time constant a fifth is left
@@ -126,7 +127,8 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     """The same where no run's motor torque has a mean of its own. It counts where it names what friction goes with,
     beside all that had a name and nothing else, and explains everything."""
     looks = [replace(run.look, steady=True) for run in so_far.p.campaign.runs]
-    other, ranked = searched(prepare(looking(campaign, looks), hold_out), BY_SPEED | {WARMING})
+    p = prepare(looking(campaign, looks), hold_out)
+    other, ranked = searched(p, TOLD, lambda one: not TOLD.isdisjoint(one.names) or one.left < so_far.left)
     new = other.names - so_far.names
-    told = not other.loud and other.names > so_far.names and new <= BY_SPEED | {WARMING}
+    told = not other.loud and other.names > so_far.names and new <= TOLD
     return (other, ranked) if told else (so_far, found)

@@ -37,7 +37,9 @@ def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence
     scatter = about_a_line(so_far.solution) or 0.0
     looks = [replace(run.look, zeros=scatter) for run in so_far.p.campaign.runs]
     there = with_torque_zeros(looking(campaign, looks), so_far.solution)
-    other, ranked = searched(prepare(there, hold_out), frozenset({LATE}))
+    other, ranked = searched(
+        prepare(there, hold_out), frozenset({LATE}), lambda one: LATE in one.names or one.left < so_far.left
+    )
     late = not other.loud and other.names == {LATE, *so_far.names}
     return (other, ranked) if late else (so_far, found)
 

@@ -18,7 +18,7 @@ from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.runs.alike import alike
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.runs.recording import Recording
-from rig.analysis.tracing.selection.done import Without, done, noise_in
+from rig.analysis.tracing.selection.done import Without, done
 from rig.analysis.tracing.thresholds import BY_CHANCE, FAINT, FAIR, FREE, MOSTLY, OF_ONE_SIZE, PLAIN_AMONG_REPEATS
 
 
@@ -63,12 +63,11 @@ def as_repeats(seen: Without, unseen: Without, at: HeldOut) -> bool:
 def _shown(seen: Without, unseen: Without, at: HeldOut) -> list[Shown]:
     kappa = unseen.design.eq.noise.kappa
     shown = {c: Shown(kappa[c]) for c in CHANNELS if c in kappa}
-    noise = noise_in(seen)
     for one, floors in ((unseen, at.floors), (seen, at.seen)):
         for (run, c), _, f, e in done(one, floors):
             if c == "M" and one.design.eq.runs[run].locked:  # a motor that creeps against a spring sticks and slips
                 continue
-            square, spoilt = (e.size / floors[run, c] ** 2 * x for x in noise((run, c)))
+            square, spoilt = (e.size / floors[run, c] ** 2 * x for x in one.spoilt((run, c)))
             own, along = float(f @ f) - square, float(f @ e) - spoilt
             if own <= FAINT**2 * e.size:
                 continue

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,16 +11,25 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.model.effect import Array
 
+Noise = dict[tuple[str, str], tuple[float, float]]
+"""By procedure and channel, mean square of what an effect does there, and mean of that times what is left, in the
+block's own unit squared."""
+
 
 @dataclass(frozen=True)
 class Without:
-    """An effect taken away: the fit with it, that without it, and what they leave in every block of a design, (n,)."""
+    """An effect taken away: the fit without it, what is left in every block of a design with it and without, (n,), and
+    what sensor noise makes of it, as `noise_in` says."""
 
-    whole: Solution
     rest: Solution
     design: Design
     left: Mapping[Key, Array]
     bare: Mapping[Key, Array]
+    noise: Noise
+
+    def spoilt(self, key: Key) -> tuple[float, float]:
+        """Of its noise what is in that block."""
+        return self.noise.get((self.design.eq.runs[key[0]].procedure, key[1]), (0.0, 0.0))
 
 
 def done(one: Without, floors: Mapping[Key, float], parts: int = 1) -> Iterator[tuple[Key, int, Array, Array]]:
@@ -32,17 +41,22 @@ def done(one: Without, floors: Mapping[Key, float], parts: int = 1) -> Iterator[
             yield key, part, mine, left
 
 
-def noise_in(one: Without) -> Callable[[Key], tuple[float, float]]:
-    """What sensor noise makes of an effect in a block: mean square of what it does there, and mean of that times what
-    is left, in the block's own unit squared. It is known of a fast and a slow run of each procedure, and may grow with
-    the speed: the lesser is taken."""
-    d = one.whole.design
-    eq = d.eq
-    found: dict[tuple[str, str], tuple[float, float]] = {}
+def noise_in(s: Solution, rests: Sequence[Solution]) -> list[Noise]:
+    """What sensor noise makes of each effect, `rests` being the fits without one. It is known of a fast and a slow run
+    of each procedure, and may grow with the speed: the lesser is taken."""
+    d, x = s.design, together(s, rests)
+    found: list[Noise] = [{} for _ in rests]
     for key in d.noise:
-        left = d.noise_left(key, one.whole.x)
-        made = d.noise_left(key, one.rest.x) - left
-        like = (eq.runs[key[0]].procedure, key[1])
-        both = float(np.mean(made**2)), float(np.mean(made * left))
-        found[like] = min(both, found.get(like, both))
-    return lambda key: found.get((eq.runs[key[0]].procedure, key[1]), (0.0, 0.0))
+        left, *bare = d.noise_left(key, x).T
+        like = (d.eq.runs[key[0]].procedure, key[1])
+        for noise, e in zip(found, bare, strict=True):
+            made = e - left
+            both = float(np.mean(made**2)), float(np.mean(made * left))
+            noise[like] = min(both, noise.get(like, both))
+    return found
+
+
+def together(s: Solution, rests: Sequence[Solution]) -> Array:
+    """Coefficients of all fits side by side, (p, 1 + k): what they make of a block is one product, and a matrix takes
+    longer to read than to multiply."""
+    return np.stack([s.x, *(rest.x for rest in rests)], 1)

@@ -13,7 +13,7 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution, without
 from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.selection.as_repeats import as_repeats
-from rig.analysis.tracing.selection.done import Without, done, noise_in
+from rig.analysis.tracing.selection.done import Noise, Without, done, noise_in, together
 from rig.analysis.tracing.thresholds import (
     ABOUT,
     ALL,
@@ -115,9 +115,10 @@ def scores(s: Solution, d: Design, at: HeldOut) -> list[HeldOutScore]:
     """Every effect in the model, scored by taking it away."""
     names = list(dict.fromkeys(t.name for t in d.terms))
     rests = [without(s, [i for i, t in enumerate(d.terms) if t.name == name]) for name in names]
+    noise = noise_in(s, rests)
+    seen, unseen = (_taken_away(s, rests, of, noise) for of in (s.design, d))
     whole = at.residuals(s, d)
-    ones = zip(names, _taken_away(s, rests, s.design), _taken_away(s, rests, d), strict=True)
-    return [_score(name, seen, unseen, at, whole) for name, seen, unseen in ones]
+    return [_score(*one, at, whole) for one in zip(names, seen, unseen, strict=True)]
 
 
 def _score(name: str, seen: Without, unseen: Without, at: HeldOut, whole: Mapping[Key, Array]) -> HeldOutScore:
@@ -164,13 +165,12 @@ def _score(name: str, seen: Without, unseen: Without, at: HeldOut, whole: Mappin
     )
 
 
-def _taken_away(s: Solution, rests: Sequence[Solution], d: Design) -> list[Without]:
-    """Each effect, `rests` being the fits without one. What they leave in a block is made by one product: a matrix
-    takes longer to read than to multiply."""
-    x = np.stack([s.x, *(rest.x for rest in rests)], 1)
+def _taken_away(s: Solution, rests: Sequence[Solution], d: Design, noise: Sequence[Noise]) -> list[Without]:
+    """Each effect in the blocks of a design, `rests` being the fits without one."""
+    x = together(s, rests)
     made = {key: np.ascontiguousarray(d.residual(key, x).T) for key in d.y}
     left, *bare = ({key: e[i] for key, e in made.items()} for i in range(1 + len(rests)))
-    return [Without(s, rest, d, left, one) for rest, one in zip(rests, bare, strict=True)]
+    return [Without(rest, d, left, e, own) for rest, e, own in zip(rests, bare, noise, strict=True)]
 
 
 def overall(work: Mapping[Key, float], d: Design) -> float:
@@ -222,9 +222,9 @@ def unsteadiness(one: Without, floors: Mapping[Key, float], parts: int = 1) -> U
     """
     spread, work = dict.fromkeys(CHANNELS, 0.0), dict.fromkeys(CHANNELS, 0.0)
     shown, most = set(), 0.0
-    noise, kappa = noise_in(one), one.design.eq.noise.kappa
+    kappa = one.design.eq.noise.kappa
     for key, part, f, e in done(one, floors, parts):
-        square, along = (e.size / floors[key] ** 2 * x for x in noise(key))
+        square, along = (e.size / floors[key] ** 2 * x for x in one.spoilt(key))
         own = float(f @ f) - square
         if own > FAINT**2 * e.size:
             chance = kappa[key[1]] * float(f @ f)
