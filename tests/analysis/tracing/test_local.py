@@ -355,6 +355,25 @@ def test_a_staircase_of_steps_too_small_to_be_seen_is_told_by_the_way(tmp_path: 
 
 @pytest.mark.slow
 @pytest.mark.long
+def test_counts_lost_in_every_fast_run_are_no_delays_of_the_runs(tmp_path: Path, shared: Path) -> None:
+    """What the losses shift a run by, the faster it is the more, looks like delays of its own (exam 96, case 01)."""
+    fast = ("200rpm", "300rpm", "400rpm")
+
+    def stepped(c: Columns, began: float) -> Columns:
+        rng = np.random.default_rng(round(began))
+        at, counts = rng.uniform(0.2, 0.8, (3, 1)), rng.integers(0, 4, (3, 1))
+        lost = np.sum(counts * (c["t"] > at * c["t"][-1]), axis=0) if began in hit else 0
+        return {"theta_l": c["theta_l"] - 6 * 2 * np.pi / 1296000 * lost}
+
+    campaign = shared / "cases" / "open-1"
+    hit = {started(run) for run in campaign.glob("speed_*") if run.name.split("_")[1].removeprefix("minus") in fast}
+    found = spiked(tmp_path, campaign, stepped)
+    assert found.verdict.effects == ("missed_counts",)
+    assert found.effects[0].each_run
+
+
+@pytest.mark.slow
+@pytest.mark.long
 def test_counts_lost_one_way_alone_are_told_by_that_way(tmp_path: Path, shared: Path) -> None:
     def lossy(c: Columns, began: float) -> Columns:
         step = np.diff(c["theta_m"], prepend=c["theta_m"][0]) / RATIO

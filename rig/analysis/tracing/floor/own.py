@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from rig.analysis.tracing.fit.equations import Key, Term
+from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.model import Solution, design
 from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
@@ -16,7 +16,7 @@ from rig.analysis.tracing.floor.ringing import ringing
 from rig.analysis.tracing.floor.shaken_load import shaken_load
 from rig.analysis.tracing.floor.shaken_motor import shaken_motor
 from rig.analysis.tracing.floor.sidebands import sidebands
-from rig.analysis.tracing.floor.steps import LOST, explained, find_steps, lost_counts, step_columns
+from rig.analysis.tracing.floor.steps import LOST, Steps, explained, find_steps, lost_counts, step_columns
 from rig.analysis.tracing.floor.vibration import VIBRATION, find_vibration
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.holdout import HELD_PART, Split
@@ -57,11 +57,17 @@ def find(s: Solution, parts: Split) -> Own:
     runs = sorted({i for i, _ in everywhere})
     own = replace(own, nameless=ringing(eq, s.design.terms, runs))
     whole = [i for i in runs if HELD_PART not in eq.runs[i].name]
+    again = any(term.name == LOST.name for term in s.design.terms)  # again and again, by one law for all runs
+    steps = None if again else find_steps(eq, everywhere, s.value("compliance"))
+    # jumps come first: what they shift single runs by looks like delays, and no delay makes any
+    if steps and (stepping := _stepping(eq, everywhere, own, steps)):
+        return stepping
     if not _is_late(s.design.terms) and (late := own_delays(s, whole, runs)) is not None:
         return _with(own, SKEW.name, late.columns, late.parameters(), late.sentence())
-    if any(term.name == LOST.name for term in s.design.terms):  # again and again, by one law for all runs
+    read = [i for i in whole if (i, "A") in everywhere]
+    if steps is None or steps.rows or (between := find_between(s, read)) is None:
         return own
-    return _stepping(s, everywhere, own)
+    return _with(own, LOST.name, between.columns(eq), between.parameters(), between.sentence(eq))
 
 
 def _is_late(terms: Sequence[Term]) -> bool:
@@ -83,21 +89,17 @@ def _shaken(s: Solution, e: Mapping[Key, Array], everywhere: Mapping[Key, Array]
     return replace(nothing, line=line)
 
 
-def _stepping(s: Solution, everywhere: Mapping[Key, Array], own: Own) -> Own:
-    """With counts that were lost within runs or between two of them, or a jump that may be the gear's."""
-    eq = s.design.eq
-    steps = find_steps(eq, everywhere, s.value("compliance"))
+def _stepping(eq: Equations, everywhere: Mapping[Key, Array], own: Own, steps: Steps) -> Own | None:
+    """With counts that were lost within runs, or a jump that may be the gear's; None where the steps are neither."""
     whole = [i for i, c in everywhere if c == "A" and HELD_PART not in eq.runs[i].name]
-    if lost_counts(eq, steps, repeats(eq.runs, whole)):
-        columns = step_columns(eq, steps)
-        if explained(eq, everywhere, columns) <= OWN:
-            return own
-        if (jumped := once_under_load(eq, everywhere, steps)) is not None:
-            return replace(own, nameless=joined([own.nameless, columns]), jumped=jumped)
-        return _with(own, LOST.name, columns, steps.parameters())
-    if steps.rows or (between := find_between(s, whole)) is None:
-        return own
-    return _with(own, LOST.name, between.columns(eq), between.parameters(), between.sentence(eq))
+    if not lost_counts(eq, steps, repeats(eq.runs, whole)):
+        return None
+    columns = step_columns(eq, steps)
+    if explained(eq, everywhere, columns) <= OWN:
+        return None
+    if (jumped := once_under_load(eq, everywhere, steps)) is not None:
+        return replace(own, nameless=joined([own.nameless, columns]), jumped=jumped)
+    return _with(own, LOST.name, columns, steps.parameters())
 
 
 def _with(own: Own, name: str, columns: dict[Key, Array], words: tuple[Parameter, ...], note: str = "") -> Own:
