@@ -11,9 +11,9 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 from rig.model.gloss import waved
 from rig.model.waves import wave
 
-# of the first shape parameter, several orders at once: 1, 2 and 4, as a wave generator with two lobes has them, or
-# those of a narrow sector that either lobe passes
-TOGETHER, SECTOR = 0.0, -1.0
+# of the first shape parameter, several orders at once: 1, 2 and 4, as a wave generator with two lobes has them, those
+# of a narrow sector that either lobe passes, or all of a spring that is soft where one lobe is and not the other
+TOGETHER, SECTOR, UNEVEN = 0.0, -1.0, -2.0
 MOTOR, OUTPUT = 0.0, 1.0  # of the third shape parameter: whose angle it is
 REACTION: Final = {MOTOR: Port.MOTOR_TORQUE, OUTPUT: Port.LOAD_TORQUE}
 
@@ -40,13 +40,17 @@ class AngleDependentStiffness(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("order", "reaction", "side")
     loose: ClassVar[tuple[bool, ...]] = (False, False, False)
     ORDERS: Final = (1.0, 2.0, 3.0, 4.0, 6.0)
-    SEVERAL: Final = {TOGETHER: (1.0, 2.0, 4.0), SECTOR: (2.0, 4.0, 6.0, 8.0)}
+    SEVERAL: Final = {
+        TOGETHER: (1.0, 2.0, 4.0),
+        SECTOR: (2.0, 4.0, 6.0, 8.0),
+        UNEVEN: (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0),
+    }
     OF_OUTPUT: Final = (1.0, 2.0)
     TURNS: Final = 0.5  # of the output, least travel: an order 1 has shown both its ends then
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Low orders of the wave generator, and of the output where it turns far enough."""
-        of_motor = [(k, reaction, MOTOR) for k in (*self.ORDERS, TOGETHER, SECTOR) for reaction in (1.0, 0.0)]
+        of_motor = [(k, reaction, MOTOR) for k in (*self.ORDERS, *self.SEVERAL) for reaction in (1.0, 0.0)]
         orders = self.OF_OUTPUT if reach.load_turns >= self.TURNS else ()
         return (*of_motor, *((k, reaction, OUTPUT) for k in orders for reaction in (1.0, 0.0)))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -154,6 +155,34 @@ def test_what_is_in_one_sensor_is_drawn_there_and_gone_from_every_channel(tmp_pa
     assert found.added_curves[0].acts == "the reading of the torque sensor: waves of the motor's angle"
     assert found.ratios_before["tau_l"] > 4.0
     assert all(found.ratios_after[channel] < 1.2 for channel in ("theta_l", "tau_m", "tau_l"))
+
+
+@pytest.mark.parametrize(
+    ("port", "of"),
+    [
+        (Port.WIND_UP, lambda s: s.torque),
+        (Port.WIND_UP, lambda s: s.torque_rate),
+        (Port.MOTOR_TORQUE, lambda s: s.way),
+        (Port.MOTOR_TORQUE, lambda s: s.way * np.abs(s.torque)),
+        (Port.MOTOR_TORQUE, lambda s: s.omega_m),
+        (Port.MOTOR_TORQUE, lambda s: s.alpha_m),
+        (Port.LOAD_TORQUE, lambda s: s.way),
+        (Port.LOAD_TORQUE, lambda s: s.omega_l),
+        (Port.LOAD_TORQUE, lambda s: s.alpha_l),
+        (Port.READS_THETA_L, lambda s: s.omega_l),
+    ],
+)
+@pytest.mark.parametrize("coordinate", ["load_angle", "speed", "load", "time"])
+def test_every_number_of_the_model_may_change_along_a_coordinate(
+    coordinate: str, port: Port, of: Callable[[Signals], np.ndarray]
+) -> None:
+    """Stiffness, damping, inertias, frictions and a delay: none of them is drawn as if it were another."""
+    s = FORTH_AND_BACK
+    by = {"load_angle": s.theta_l, "speed": np.abs(s.omega_m), "load": s.torque, "time": s.t}[coordinate]
+    wanted = of(s) * (by - by.mean())
+    made = [z[port] for form in forms(coordinate, Seen(s), 1) if port in (z := form.columns(s, ()))]
+    left = [np.linalg.norm(wanted - z @ np.linalg.lstsq(z, wanted, rcond=None)[0]) for z in made]
+    assert min(left) < 1e-6 * np.linalg.norm(wanted)
 
 
 @pytest.mark.parametrize(("vouched", "wide", "drawn"), [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -97,10 +97,17 @@ def test_friction_that_scatters_is_not(monkeypatch: pytest.MonkeyPatch, rng: np.
 def test_the_look_counts_where_it_adds_what_means_tell_of_and_explains_everything(
     monkeypatch: pytest.MonkeyPatch, before: tuple[str, ...], after: tuple[str, ...], loud: bool, counts: bool
 ) -> None:
-    other = SimpleNamespace(names=set(after), loud=loud)
+    other: Any = SimpleNamespace(names=set(after), loud=loud, left=2.0)
     monkeypatch.setattr(means, "looking", lambda campaign, looks: campaign)
     monkeypatch.setattr(means, "prepare", lambda campaign, hold_out: None)
-    monkeypatch.setattr(means, "searched", lambda p, wanted: (other, "ranking") if means.WARMING in wanted else None)
-    so_far: Any = SimpleNamespace(names=set(before), p=SimpleNamespace(campaign=SimpleNamespace(runs=())))
+
+    def searched(p: object, wanted: frozenset[str], shown: Callable[[Any], bool]) -> tuple[Any, str]:
+        assert means.WARMING in wanted
+        assert shown(other) == (not wanted.isdisjoint(after))  # else it leaves no less, and nobody need ask for more
+        assert shown(SimpleNamespace(names=set(), left=1.0))
+        return other, "ranking"
+
+    monkeypatch.setattr(means, "searched", searched)
+    so_far: Any = SimpleNamespace(names=set(before), left=2.0, p=SimpleNamespace(campaign=SimpleNamespace(runs=())))
     got, _ = means.taken(so_far, SimpleNamespace(), SimpleNamespace(), ())  # type: ignore[arg-type]
     assert (got is other) is counts

@@ -54,14 +54,21 @@ GAUGES: Final = At(Port.READS_TAU_L, READING, _one, ANGLES | SENSOR)
 PLACES: Final = (
     At(Port.MOTOR_TORQUE, "friction of the motor", _way, MOTOR),
     PUSHED,
+    At(
+        Port.MOTOR_TORQUE, "friction of the motor, times the torque", lambda s: s.way * np.abs(s.torque), MOTOR | SENSOR
+    ),
     At(Port.MOTOR_TORQUE, "a drag of the motor", lambda s: s.omega_m, MOTOR),
+    At(Port.MOTOR_TORQUE, "an inertia of the motor", lambda s: s.alpha_m, MOTOR),
     FRICTION,
     At(Port.LOAD_TORQUE, "a torque on the load", _one, SENSOR),
+    At(Port.LOAD_TORQUE, "a drag of the load", lambda s: s.omega_l, SENSOR),
     At(Port.LOAD_TORQUE, "a torque on the load, times what hangs there", lambda s: s.tau_ext, SENSOR),
     At(Port.LOAD_TORQUE, "an inertia of the load", lambda s: s.alpha_l, SENSOR),
     ANGLE,
     At(Port.READS_THETA_L, "the reading of the angles, by the direction", _way, ANGLES),
+    At(Port.READS_THETA_L, "the reading of the angles, times their speed", lambda s: s.omega_l, ANGLES),
     At(Port.WIND_UP, "the wind-up, times the torque", _torque, ANGLES | SENSOR),
+    At(Port.WIND_UP, "the wind-up, times the torque's rate", lambda s: s.torque_rate, ANGLES | SENSOR),
     GAUGES,
     At(Port.READS_TAU_L, f"{READING}, by the direction", _way, ANGLES | SENSOR),
     At(
