@@ -56,16 +56,15 @@ def find(s: Solution, parts: Split) -> Own:
     own = _shaken(s, e, everywhere, parts)
     runs = sorted({i for i, _ in everywhere})
     own = replace(own, nameless=ringing(eq, s.design.terms, runs))
-    whole = [i for i in runs if HELD_PART not in eq.runs[i].name]
+    whole = [i for i in runs if (i, "A") in everywhere and HELD_PART not in eq.runs[i].name]
     again = any(term.name == LOST.name for term in s.design.terms)  # again and again, by one law for all runs
     steps = None if again else find_steps(eq, everywhere, s.value("compliance"))
     # jumps come first: what they shift single runs by looks like delays, and no delay makes any
-    if steps and (stepping := _stepping(eq, everywhere, own, steps)):
+    if steps is not None and (stepping := _stepping(eq, everywhere, own, steps, whole)):
         return stepping
     if not _is_late(s.design.terms) and (late := own_delays(s, whole, runs)) is not None:
         return _with(own, SKEW.name, late.columns, late.parameters(), late.sentence())
-    read = [i for i in whole if (i, "A") in everywhere]
-    if steps is None or steps.rows or (between := find_between(s, read)) is None:
+    if steps is None or steps.rows or (between := find_between(s, whole)) is None:
         return own
     return _with(own, LOST.name, between.columns(eq), between.parameters(), between.sentence(eq))
 
@@ -89,9 +88,11 @@ def _shaken(s: Solution, e: Mapping[Key, Array], everywhere: Mapping[Key, Array]
     return replace(nothing, line=line)
 
 
-def _stepping(eq: Equations, everywhere: Mapping[Key, Array], own: Own, steps: Steps) -> Own | None:
-    """With counts that were lost within runs, or a jump that may be the gear's; None where the steps are neither."""
-    whole = [i for i, c in everywhere if c == "A" and HELD_PART not in eq.runs[i].name]
+def _stepping(
+    eq: Equations, everywhere: Mapping[Key, Array], own: Own, steps: Steps, whole: Sequence[int]
+) -> Own | None:
+    """With counts that were lost within runs, or a jump that may be the gear's; None where the steps are neither, by
+    the repeats among runs `whole`."""
     if not lost_counts(eq, steps, repeats(eq.runs, whole)):
         return None
     columns = step_columns(eq, steps)
