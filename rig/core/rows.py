@@ -38,6 +38,11 @@ def stretches(rows: int) -> Iterator[slice]:
         yield slice(start, min(start + STRETCH, rows))
 
 
+def spread(rows: int, most: int) -> np.ndarray[Any, np.dtype[np.int64]]:
+    """At most so many of the rows 0..rows−1, evenly over all of them: what is the same all along needs no more."""
+    return np.unique(np.linspace(0, rows - 1, min(most, rows)).astype(np.int64))
+
+
 def picked(column: Array, rows: np.ndarray[Any, np.dtype[np.int64]]) -> Array:
     """`column[rows]`."""
     out = room(rows.size)

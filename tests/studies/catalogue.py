@@ -27,9 +27,10 @@ def make(root: Path, run: Path, count: int) -> None:
     draw, start = random.Random(1), datetime(2024, 1, 1, tzinfo=UTC)
     for k in range(count):
         when, serial = start + timedelta(minutes=13 * k), f"SN{k % 40:04d}"
-        folder = root / f"{when:%Y-%m-%d}" / f"{when:%H%M}-{run.name[5:-5]}-{serial}-{k:06x}"
-        folder.mkdir(parents=True)
-        about = {**manifest, "uid": f"{k:032x}", "started_utc": when.isoformat()}
+        uid = f"{draw.getrandbits(128):032x}"
+        folder = root / f"{when:%Y-%m-%d}" / f"{when:%H%M}-{run.name[5:-5]}-{serial}-{uid[:4]}"
+        folder.mkdir(parents=True)  # called by its uid, as ours are: others may be copies, of which more is remembered
+        about = {**manifest, "uid": uid, "started_utc": when.isoformat()}
         about["gear"] = {**manifest["gear"], "serial": serial}
         estimates = dict(list(result["estimates"].items())[:KEPT])
         first = next(iter(estimates))

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
-from rig.core.rows import stretches
+from rig.core.rows import spread, stretches
 from rig.core.units import TURN
 
 Index = npt.NDArray[np.int64]
@@ -59,7 +59,7 @@ def find_gaps(clock: Array | None, timed: bool) -> Gaps:
     """Steps of `clock`, (n,) s or numbers of rows, that are much longer than usual; none without a clock."""
     if clock is None or clock.size < 3:
         return Gaps(np.empty(0, np.int64), np.empty(0), np.empty(0), timed)
-    at = _looked_at(clock.size)
+    at = spread(clock.size - 1, LOOKED_AT)
     most = LONG * float(np.median(clock[at + 1] - clock[at]))
     found = [
         start + 1 + np.flatnonzero(np.diff(clock[start : some.stop]) > most)
@@ -74,14 +74,9 @@ def that_matter(gaps: Gaps, theta_m: Array) -> Gaps:
     """The gaps in which the motor, at `theta_m` [rad], (n,), turned too far for a fit to bridge, or that are long."""
     if not gaps.before.size:
         return gaps
-    at = _looked_at(theta_m.size)
+    at = spread(theta_m.size - 1, LOOKED_AT)
     at = np.setdiff1d(at, gaps.before - 1)
     went, took = np.abs(theta_m[at + 1] - theta_m[at]), gaps.clock[at + 1] - gaps.clock[at]
     usual = float(went.mean() / took.mean()) if at.size else 0.0
     turned = np.maximum(np.abs(theta_m[gaps.before] - theta_m[gaps.before - 1]), usual * gaps.length)
     return gaps.some((turned > TURNED) | (gaps.timed & (gaps.length > IDLE)))
-
-
-def _looked_at(rows: int) -> Index:
-    """Rows before the steps that are looked at."""
-    return np.unique(np.linspace(0, rows - 2, min(LOOKED_AT, rows - 1)).astype(np.int64))

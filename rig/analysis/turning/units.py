@@ -15,7 +15,9 @@ from rig.analysis.motion.strokes import Stroke
 from rig.analysis.smoothness.measure import nominal_rpm
 from rig.core.numbers import number
 from rig.core.plausible import PERIOD, TORQUE
-from rig.core.units import ARCSEC, DEG, TURN
+from rig.core.rows import spread, stretches
+from rig.core.units import DEG, TURN
+from rig.model.transmission_error import transmission_error
 
 FACTORS = (
     (1 / DEG, "theta_m", "180/π: is theta_m in deg"),
@@ -27,6 +29,7 @@ FACTORS = (
     (1e-3, "t", "1/1000: is t in ms"),
     (1e3, "t", "1000: was t turned from ms into s twice"),
 )
+LOOKED_AT = 10_000  # rows: of a run of hours a unit needs no more
 NEAR = 0.03  # share by which a speed may differ from that of a wrong unit: a loop follows better than that
 
 
@@ -49,7 +52,10 @@ def wrong_unit(motion: Motion, strokes: list[Stroke], reference: Array | None, c
 
 def unlikely_time(motion: Motion) -> str:
     """That no rig is read so slowly or fast; "" where it may be. The same bounds refuse a file at import."""
-    apart = float(np.median(np.diff(motion.t))) if motion.t is not None and motion.t.size > 1 else PERIOD[1]
+    if motion.t is None or motion.t.size < 2:
+        return ""
+    at = spread(motion.t.size - 1, LOOKED_AT)
+    apart = float(np.median(motion.t[at + 1] - motion.t[at]))
     if PERIOD[0] <= apart <= PERIOD[1]:
         return ""
     return (
@@ -62,8 +68,7 @@ def unlikely_torque(run: Source) -> Iterator[str]:
     """What of torques no gear has, a sentence each: what goes by them is another, what goes by angles is not. The same
     bounds refuse a file at import."""
     for name, limit in TORQUE.items():
-        tau = run.column(name)
-        peak = float(np.nanmax(np.abs(tau))) if tau is not None and np.isfinite(tau).any() else 0.0
+        peak = _highest(run.column(name))
         if peak > limit:
             yield (
                 f"The unit of {name} may be another one: it reaches {peak:.4g} N·m, expected below {limit:g} N·m; "
@@ -75,9 +80,13 @@ def winds_too_far(motion: Motion, tau_l: Array | None, K: float | None) -> str:
     """That the gear would have to wind up further than it does, were `tau_l` [N·m] in its unit and `K` [N·m/rad] that
     of this gear; "" where it need not, or where one of them is not known. θ̃ swings by more than the wind-up alone at
     speed and with backlash, never by so much less."""
-    if tau_l is None or K is None or not np.isfinite(tau_l).any():
+    if tau_l is None or motion.theta_l is None or K is None:
         return ""
-    torque, error = (_swing(x) for x in (tau_l, motion.error_arcsec(0, motion.theta_m.size) * ARCSEC))
+    at = spread(motion.theta_m.size, LOOKED_AT)
+    if not np.isfinite(tau_l[at]).any():
+        return ""
+    torque = _swing(tau_l[at])
+    error = _swing(transmission_error(motion.theta_m[at], motion.theta_l[at], motion.ratio))
     if torque < FAR * K * error:
         return ""
     return (
@@ -85,6 +94,12 @@ def winds_too_far(motion: Motion, tau_l: Array | None, K: float | None) -> str:
         f"K = {K:.4g} N·m/rad up by {torque / K / DEG:.3g} deg, and θ̃ swings by {error / DEG:.3g} deg; stiffness and "
         "what hangs on the output go by it."
     )
+
+
+def _highest(x: Array | None) -> float:
+    """Of |x|, (n,), where it was read."""
+    parts = [] if x is None else [x[some] for some in stretches(x.size)]
+    return max((float(np.fmax.reduce(np.abs(part), initial=0.0)) for part in parts), default=0.0)
 
 
 def _swing(x: Array) -> float:
