@@ -7,6 +7,7 @@ from typing import Final
 
 MEASURED: Final = frozenset({"t", "theta_m", "theta_l", "tau_m", "tau_l"})
 """What a full campaign measures."""
+SOME: Final = 0.1  # share that the other way, or the other sign, must have
 
 
 @dataclass(frozen=True)
@@ -34,3 +35,22 @@ class Reach:
     torque_noise: float = 0.0  # N·m, RMS of sensor noise in T, where it is most
     lines_m: tuple[int, ...] = ()  # line counts that the residual shows, whatever is said of the encoders
     lines_l: tuple[int, ...] = ()
+
+    @property
+    def both_ways(self) -> bool:
+        """Whether the motor turns each way in a fair part of the rows: else a way is but another constant."""
+        return self.backwards > SOME
+
+    @property
+    def fast_both_ways(self) -> bool:
+        """The same of its squared speed."""
+        return self.fast_backwards > SOME
+
+    @property
+    def pulled_both_ways(self) -> bool:
+        """The same of the signs of the squared torque."""
+        return self.pulled > SOME
+
+    def speeds_differ(self, times: float) -> bool:
+        """Whether the fastest is more than so many times the slowest: at one speed the way is the time."""
+        return self.fastest > times * self.slowest

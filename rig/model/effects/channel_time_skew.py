@@ -13,7 +13,7 @@ LOAD, MOTOR, TORQUE = 0.0, 1.0, 2.0  # of the first shape parameter: which readi
 READING = {LOAD: "theta_l", MOTOR: "theta_m", TORQUE: "tau_l"}
 STEADY, ON_AND_ON, EACH_RUN, ALONG_RUN = 0.0, 1.0, 2.0, 3.0  # of the third: whether it grows, and since when
 AVERAGED = 4.0  # of the third: late as what is the mean of a while
-SOME, WIDE = 0.1, 1.5  # share of the rows that go back; fastest over slowest
+WIDE = 1.5  # fastest over slowest
 SOON = 1e-4  # s: a shift by less is its rate
 FILTERED: Final = 3e-4  # s, how late a torque sensor's own low-pass may make it: 530 Hz, first order
 KNOTS = np.linspace(0.0, 1.0, 13)  # of the curve along a run, shares of it
@@ -62,7 +62,7 @@ class ChannelTimeSkew(Effect):
         one speed."""
         sides = [side for side, reading in READING.items() if reading in reach.has]
         steady = [(side, step, STEADY) for side in sides for step in self.STEPS]
-        various = reach.backwards > SOME or reach.fastest > WIDE * reach.slowest
+        various = reach.both_ways or reach.speeds_differ(WIDE)
         if not various:
             return tuple(steady)
         if READING[TORQUE] in reach.has:

@@ -12,7 +12,6 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 LOAD, MOTOR = 0.0, 1.0  # of the first shape parameter: the encoder that lost them once, at an instant
 GONE, FURTHEST, TURNED = 2.0, 3.0, 4.0  # again and again: with the way gone, the furthest from the start, the turning
 FORTH, BACK = 5.0, 6.0  # with the way gone one way alone
-SOME = 0.1  # share of the rows that go back
 WIDE = 1.5  # fastest over slowest: at one speed the way is the time
 SEVERAL = 4  # runs: in one log the way is the time, and an angle
 
@@ -49,10 +48,10 @@ class MissedCounts(Effect):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """What is lost again and again. The instant of a step is found by the row, not in shapes."""
-        if reach.runs < SEVERAL or reach.fastest <= WIDE * reach.slowest or not {"theta_m", "theta_l"} <= reach.has:
+        if reach.runs < SEVERAL or not reach.speeds_differ(WIDE) or not {"theta_m", "theta_l"} <= reach.has:
             return ()
         speeds = [w for w in self.SPEEDS if reach.slowest < w < reach.fastest]
-        one_way = ((FORTH, 0.0), (BACK, 0.0)) if reach.backwards > SOME else ()
+        one_way = ((FORTH, 0.0), (BACK, 0.0)) if reach.both_ways else ()
         return ((GONE, 0.0), (FURTHEST, 0.0), *one_way, *((TURNED, w) for w in speeds))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:

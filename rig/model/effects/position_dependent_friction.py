@@ -31,14 +31,13 @@ class PositionDependentFriction(Effect):
     SHARP: Final = tuple(float(k) for k in range(9, 13))  # edges of a tight spot, where cogging is told by the way back
     RIDING: Final = (2.0, 4.0, 6.0)  # of the flexspline, whose lobes are two
     LEAST: Final = 0.15  # output turns, over which 2.04 and 2 come apart
-    SOME: Final = 0.1  # share of the rows that go back
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Low orders of the motor, higher ones where it turns both ways, and what rides on the flexspline where the
         output turns far enough to tell."""
         sides = (1.0, -1.0) if reach.load_turns >= self.LEAST else ()
         riding = (k * (1.0 + sigma / reach.ratio) for sigma in sides for k in self.RIDING)
-        sharp = self.SHARP if reach.backwards > self.SOME else ()
+        sharp = self.SHARP if reach.both_ways else ()
         return tuple((k,) for k in (*self.ORDERS, *sharp, *riding))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:

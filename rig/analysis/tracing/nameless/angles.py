@@ -28,7 +28,7 @@ class OtherScale(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, of several runs at several speeds."""
-        return when(reach.runs >= SEVERAL and reach.fastest > WIDE * reach.slowest)
+        return when(reach.runs >= SEVERAL and reach.speeds_differ(WIDE))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading, by the motor's angle, whose noise is a fiftieth."""
@@ -60,7 +60,7 @@ class WarmedMount(Nameless):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Times that some runs reach, of several runs at several speeds."""
         times = ((float(t_w),) for t_w in self.LEAKS if t_w < reach.duration)
-        return when(reach.runs >= SEVERAL and reach.fastest > WIDE * reach.slowest, *times)
+        return when(reach.runs >= SEVERAL and reach.speeds_differ(WIDE), *times)
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """About those that are tried."""

@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import FAST, SOME, WIDE, Amount, Nameless, sum_of, wave_of, when
+from rig.analysis.tracing.nameless.law import FAST, WIDE, Amount, Nameless, sum_of, wave_of, when
 from rig.core.units import TURN
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 from rig.model.waves import wave
@@ -25,7 +25,7 @@ class UnevenDrag(Nameless):
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Powers: of a film between lip and shaft, of a fluid, of what it stirs. Where the motor turns fast one way
         alone it is any drag."""
-        return when(reach.fast_backwards > SOME, (0.5,), (1.0,), (2.0,))
+        return when(reach.fast_both_ways, (0.5,), (1.0,), (2.0,))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
@@ -55,9 +55,7 @@ class SlowingDrag(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Of the motor, and of the load."""
-        return when(
-            reach.fastest > WIDE * reach.slowest, *((p, side) for side in (self.MOTOR, self.LOAD) for p in self.POWERS)
-        )
+        return when(reach.speeds_differ(WIDE), *((p, side) for side in (self.MOTOR, self.LOAD) for p in self.POWERS))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
@@ -88,7 +86,7 @@ class SectorDrag(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where the output goes far both ways: friction that does not turn with the way is a weight."""
-        return when(reach.backwards > SOME and reach.turned_both_ways > self.FAR * reach.load_turns)
+        return when(reach.both_ways and reach.turned_both_ways > self.FAR * reach.load_turns)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of every order."""

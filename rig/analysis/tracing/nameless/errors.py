@@ -59,7 +59,7 @@ class ErrorBySpeed(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Powers: a film that builds up at once, one that grows, a force that goes with the square."""
-        return when(reach.fastest > WIDE * reach.slowest, (0.3,), (1.0,), (2.0,))
+        return when(reach.speeds_differ(WIDE), (0.3,), (1.0,), (2.0,))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Cosine and sine of both orders, and what they do to the lever."""

@@ -13,7 +13,6 @@ from rig.model.waves import wave
 LONG: Final = 1e3  # s, about a campaign
 FAST: Final = 40.0  # rad/s of the motor, about its fastest run
 SEVERAL: Final = 6  # runs, with fewer a drift is whatever one of them has
-SOME: Final = 0.1  # share of the rows or of the torque that another way or sign must have
 WIDE: Final = 2.0  # fastest over slowest
 BOTH_ANGLES: Final = frozenset({"theta_m", "theta_l"})
 """What a law that is made of the torque read needs, to be held against a wind-up that is read as well: by the torque

@@ -9,7 +9,6 @@ import numpy as np
 
 from rig.analysis.tracing.nameless.law import (
     BOTH_ANGLES,
-    SOME,
     Amount,
     Nameless,
     OfTheTorqueSensor,
@@ -91,7 +90,7 @@ class DraggedSensor(OfTheTorqueSensor):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where it turns both ways."""
-        return when(reach.backwards > SOME)
+        return when(reach.both_ways)
 
     def has_state(self) -> bool:
         """It is told by where the output came from."""

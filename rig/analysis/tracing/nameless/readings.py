@@ -11,7 +11,6 @@ from rig.analysis.tracing.nameless.law import (
     BOTH_ANGLES,
     FAST,
     SEVERAL,
-    SOME,
     WIDE,
     Amount,
     Nameless,
@@ -103,7 +102,7 @@ class ThrownSensor(OfTheTorqueSensor):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where it turns fast both ways, or it is any drag of the load, and not at one speed."""
-        return when(reach.fast_backwards > SOME and reach.fastest > WIDE * reach.slowest and reach.runs >= SEVERAL)
+        return when(reach.fast_both_ways and reach.speeds_differ(WIDE) and reach.runs >= SEVERAL)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
@@ -154,7 +153,7 @@ class TwoGains(OfTheTorqueSensor):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where there is torque of both signs."""
-        return when(reach.pulled > SOME)
+        return when(reach.pulled_both_ways)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """Two columns in the reading."""
@@ -181,7 +180,7 @@ class SensorJump(OfTheTorqueSensor):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where there is torque of both signs."""
-        return when(reach.pulled > SOME)
+        return when(reach.pulled_both_ways)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""
@@ -290,7 +289,7 @@ class TwoConstants(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where there is torque of both signs, and something else tells it."""
-        return when(reach.pulled > SOME and _is_told(reach))
+        return when(reach.pulled_both_ways and _is_told(reach))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column in the reading."""

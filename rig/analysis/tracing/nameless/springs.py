@@ -11,7 +11,6 @@ from rig.analysis.tracing.nameless.law import (
     BOTH_ANGLES,
     FAST,
     SEVERAL,
-    SOME,
     WIDE,
     Amount,
     Nameless,
@@ -37,7 +36,7 @@ class EvenSpring(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where torques pull both ways: of one way alone it may as well be harder the more it is wound up."""
-        return when(reach.pulled > SOME)
+        return when(reach.pulled_both_ways)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
@@ -79,7 +78,7 @@ class SpringBySpeed(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where speeds differ."""
-        return when(reach.fastest > WIDE * reach.slowest)
+        return when(reach.speeds_differ(WIDE))
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""

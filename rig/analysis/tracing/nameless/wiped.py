@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.nameless.law import SOME, Amount, Nameless, sum_of, when
+from rig.analysis.tracing.nameless.law import Amount, Nameless, sum_of, when
 from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 
 TURNED, SET_OUT = 0.0, 1.0  # of the first shape parameter: since when the way counts
@@ -31,7 +31,7 @@ class WipedGrease(Nameless):
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """Ways, since the motor turned back where it does, and since a run began where there are several."""
-        turned = when(reach.backwards > SOME, *((TURNED, d) for d in self.WAYS))
+        turned = when(reach.both_ways, *((TURNED, d) for d in self.WAYS))
         return (*turned, *when(reach.runs > 1, *((SET_OUT, d) for d in self.WAYS)))
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
