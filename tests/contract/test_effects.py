@@ -287,6 +287,11 @@ def test_lost_counts_are_a_step_at_their_instant_and_nothing_else():
         assert (column[s.t > 1.5 + DT] == 1).all()
 
 
+def test_lines_that_are_seen_are_tried_with_their_neighbours():
+    tried = CATALOGUE["encoder_interpolation_error"].shapes(dataclasses.replace(REACH, counts_m=0.0, lines_m=(128,)))
+    assert {(0.0, n) for n in (127.0, 128.0, 129.0, 255.0, 257.0)} == {shape for shape in tried if shape[0] == 0.0}
+
+
 def test_a_vibration_has_its_frequency_whatever_the_motor_does():
     effect = EACH_RUN["external_vibration"]
     for s in (motion(1.0), motion(-1.0)):

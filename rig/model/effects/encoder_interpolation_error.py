@@ -31,15 +31,17 @@ class EncoderInterpolationError(Effect):
     loose: ClassVar[tuple[bool, ...]] = (False, False)
     LEAST: Final = (16, 900)  # lines of motor and load encoder: fewer are orders of the gear
     MULTIPLES: Final = (1, 3)  # an error that is large against a line is read through itself, and then has a third wave
+    WAVES: Final = (1, 2)  # of a line that is seen, beside which stands one more or less where its size goes round once
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Divisors of the counts, and line counts that the residual shows, which the slowest run samples at least three
-        times a line."""
+        """Divisors of the counts, and line counts that the residual shows with their neighbours (off its centre, a
+        disc's error swells once a turn), which the slowest run samples at least three times a line."""
         out: list[Shape] = []
         for side, counts, seen in ((MOTOR, reach.counts_m, reach.lines_m), (LOAD, reach.counts_l, reach.lines_l)):
             highest, least = self.highest(reach, side == LOAD), self.LEAST[int(side)]
             said = {m * n for n in divisors(int(counts)) if n >= least for m in self.MULTIPLES if 4 * m * n <= counts}
-            out += [(side, float(n)) for n in sorted({*said, *seen}) if n <= highest]
+            beside = {m * n + k for n in seen for m in self.WAVES for k in (-1, 1)}
+            out += [(side, float(n)) for n in sorted({*said, *seen, *beside}) if n <= highest]
         return tuple(out)
 
     @staticmethod

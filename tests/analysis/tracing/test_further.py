@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -284,4 +285,41 @@ def test_a_look_alike_in_an_eliminated_ones_place_keeps_what_stood_beside_that(
     ]
     found: Any = SimpleNamespace(solution=standing(names, True).solution, names=names, ranking=ranking)
     kept = further.try_instead_of_eliminated(standing((), loud), found, (), None)  # type: ignore[arg-type]
+    assert {term.name for term in kept.solution.design.terms} == expected
+
+
+@pytest.mark.parametrize(
+    ("explains", "expected"),
+    [
+        ({"lines"}, {"lines"}),  # found again without the mode alone, which had spoilt its size (exam 97, case 08)
+        ({"drag"}, {"drag"}),  # found for want of both
+        (set(), set()),
+    ],
+)
+def test_what_was_eliminated_is_found_again_without_what_came_first(
+    monkeypatch: pytest.MonkeyPatch, explains: set[str], expected: set[str]
+) -> None:
+    """The search found a mode, then an encoder's lines; neither stands."""
+
+    def model(names: Sequence[str]) -> Any:
+        return SimpleNamespace(design=SimpleNamespace(terms=tuple(SimpleNamespace(name=name) for name in names)))
+
+    def searched(*_: object, excluded: frozenset[str], **__: object) -> Any:
+        found = next(name for name in ("mode", "lines", "drag") if name not in excluded)
+        return SimpleNamespace(names=(found,), solution=model((found,)))
+
+    def selected_again(p: Any, found: Any, *_: object) -> Any:
+        stands = set(found.names) <= explains
+        return SimpleNamespace(solution=found.solution if stands else model(()), loud=not stands)
+
+    monkeypatch.setattr(further, "search_some", searched)
+    monkeypatch.setattr(further, "select", selected_again)
+    monkeypatch.setattr(further, "_settles", lambda other, stay: not other.loud)
+    monkeypatch.setattr(further, "_stands_alone", lambda other, stay: False)
+    monkeypatch.setattr(further, "_stands_in", lambda *_: False)
+    p = SimpleNamespace(own=SimpleNamespace(line=None), floors={})
+    first: Any = SimpleNamespace(p=p, solution=model(()), loud=True, taken=frozenset())
+    found: Any = SimpleNamespace(ranking=(), names=("mode", "lines"))
+    nothing: Any = None
+    kept = further.try_without_eliminated(first, found, nothing, (), nothing)
     assert {term.name for term in kept.solution.design.terms} == expected

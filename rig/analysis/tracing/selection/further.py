@@ -91,20 +91,25 @@ def try_instead_of_eliminated(selected: Selected, found: Found, runs: Sequence[i
 def try_without_eliminated(
     selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach
 ) -> Selected:
-    """Where much is left, those that were not tried for want of room: all but the eliminated ones. They count when they
-    explain everything; else the first selection stands."""
+    """Where much is left, those that were not tried for want of room: without all the eliminated ones, and without the
+    one that came first alone, for it may have spoilt the others' size. They count when they explain everything; else
+    the first selection stands."""
     stay = {term.name for term in selected.solution.design.terms}
-    eliminated = frozenset(name for name in found.names if name not in stay)
+    eliminated = [name for name in found.names if name not in stay]
     if not eliminated or selected.p.own.line is not None or not selected.loud:
         return selected
-    d = selected.solution.design
-    without = eliminated | selected.taken
-    others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=without)
-    if not set(others.names) - stay:
-        return selected
-    other = select(selected.p, others, runs, covered)
-    stands = _settles(other, stay) or _stands_alone(other, stay)
-    return other if stands and not _stands_in(other, stay, found, eliminated, runs) else selected
+
+    def without(gone: frozenset[str]) -> Selected | None:
+        """What is selected without those, where it counts."""
+        d, but = selected.solution.design, gone | selected.taken
+        others = search_some(d, bank, runs, covered, selected.p.floors, ranking=found.ranking, excluded=but)
+        if not set(others.names) - stay:
+            return None
+        other = select(selected.p, others, runs, covered)
+        stands = _settles(other, stay) or _stands_alone(other, stay)
+        return other if stands and not _stands_in(other, stay, found, gone, runs) else None
+
+    return first_that(without, list(dict.fromkeys(map(frozenset, (eliminated, eliminated[:1]))))) or selected
 
 
 def try_without_each(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:
