@@ -94,7 +94,6 @@ PLAIN_ENOUGH: Final = 0.8
 FAR_LESS: Final = 0.6
 AS_WELL: Final = 1.02  # of what is left: a name without which no more is left is needed no more
 AT_THE_FLOOR: Final = 1.0  # of what is left: there is no excess to remove
-FREED: Final = 1.05  # times: what a law has to leave less of unseen runs for whose sake every run has a zero of its own
 WORSE: Final = 1.25  # times: laws fitted again that leave so much more of unseen runs foretell them no more
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
 TURNED: Final = 3.5  # the same at reversals beside what was named: three, where it builds up within three samples

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from rig.analysis.tracing.fit.covariance import covariance, scatter
@@ -23,7 +23,7 @@ from rig.analysis.tracing.selection.plainer import plainer
 from rig.analysis.tracing.selection.selected import Kept, Selected, in_words, is_loud, left_over
 from rig.analysis.tracing.selection.two_for_one import two_for_one
 from rig.analysis.tracing.selection.uneven_fall import uneven_fall
-from rig.analysis.tracing.thresholds import EXPLAINED, FREED, MISSING, NAMED, WORSE
+from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED, WORSE
 from rig.model.effect import Reach
 
 
@@ -98,9 +98,8 @@ def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) 
     as_it_was = backward_elimination(s, p.held_out)
     if came.isdisjoint(term.name for term in again[0].design.terms):
         return as_it_was
-    freed = any(name in came and law.zero_of for name, law in CONFOUNDERS.items())
-    freed &= len(again[0].design.terms) >= len(as_it_was[0].design.terms)  # one for two needs no more to speak for it
-    if _left_where_it_slides(p, again) * (FREED if freed else 1.0) < _left_where_it_slides(p, as_it_was):
+    freed = {law.zero_of for name, law in CONFOUNDERS.items() if name in came}
+    if _left_where_it_slides(p, again, freed) < _left_where_it_slides(p, as_it_was, freed):
         return again
     short = [law for name, law in CONFOUNDERS.items() if name in came and law.short]
     mimicked = frozenset().union(*(law.mimics for law in short))
@@ -108,11 +107,12 @@ def _stood_in_for(p: Prepared, kept: Kept, runs: Sequence[int], covered: Reach) 
     return again if amiss and len(short) == len(came) else as_it_was
 
 
-def _left_where_it_slides(p: Prepared, kept: Kept) -> float:
-    """RMS over floor of the worst channel on unseen runs but at reversals: what friction that builds up leaves there is
-    most of it, whatever else it stands beside."""
+def _left_where_it_slides(p: Prepared, kept: Kept, freed: Collection[str]) -> float:
+    """RMS over floor of the worst channel on unseen runs, but at reversals, where friction that builds up leaves most
+    of it whatever it stands beside, and but those of which a law has `freed` every run's zero: it leaves less there,
+    true or not."""
     left = p.held_out.residuals(kept[0], kept[1])
-    return p.held_out.worst({key: e for key, e in left.items() if key[1] != "R"} or left)[0]
+    return p.held_out.worst({key: e for key, e in left.items() if key[1] not in {"R", *freed}} or left)[0]
 
 
 def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
