@@ -65,6 +65,31 @@ def test_a_confounder_that_leaves_more_of_unseen_runs_takes_no_name_away(
     assert [term.name for term in stood[0].design.terms] == [stays]
 
 
+@pytest.mark.parametrize(
+    ("of_motor", "of_shaft", "stays"),
+    [
+        (1.09, 1.26, "sensor_loop"),  # a little less where no zero was freed (exam 97, case 01)
+        (1.11, 1.00, "hysteretic_stiffness"),  # less where every zero is the run's own, as any law would leave
+    ],
+)
+def test_a_law_that_frees_the_zeros_of_a_channel_is_not_judged_by_it(
+    monkeypatch: pytest.MonkeyPatch, of_motor: float, of_shaft: float, stays: str
+) -> None:
+    left = {"hysteretic_stiffness": (1.10, 1.26), "sensor_loop": (of_motor, of_shaft)}
+    spring, sensor = (solution("eq", SimpleNamespace(name=name)) for name in left)
+
+    def residuals(s: Any, held: Any) -> dict[tuple[int, str], float]:
+        return dict(zip([(0, "M"), (0, "L")], left[s.design.terms[0].name], strict=True))
+
+    monkeypatch.setattr(select, "with_confounders", lambda s, runs, covered: sensor)
+    monkeypatch.setattr(select, "backward_elimination", lambda s, at: (s, "held", []))
+    p: Any = SimpleNamespace(held_out=SimpleNamespace(residuals=residuals, worst=lambda e: (max(e.values()), 0.0)))
+    held: Any = "held"
+    nothing: Any = None
+    stood = select._stood_in_for(p, (spring, held, []), (), nothing)
+    assert [term.name for term in stood[0].design.terms] == [stays]
+
+
 @pytest.mark.parametrize(("amiss", "stays"), [(1.73, "creep"), (1.2, "hysteretic_stiffness")])
 def test_a_loop_that_leaves_much_is_not_named_where_a_creep_explains_nearly_as_much(
     monkeypatch: pytest.MonkeyPatch, amiss: float, stays: str
