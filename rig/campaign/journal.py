@@ -124,6 +124,12 @@ class Journal:
             self._save()
         return str(self.book.get("note") or "")
 
+    def of_the_twin(self) -> None:
+        """Its runs are simulated, whatever wire they came over."""
+        if self.book["backend"] != "sim":
+            self.book["backend"] = "sim"
+            self._save()
+
     def tell(self, text: str) -> None:
         """Something worth keeping: proof, tare, a trip, an end."""
         self.book["notes"].append({"utc": utc_now(), "text": text})

@@ -79,6 +79,8 @@ def conduct(session: Session, campaign: Campaign, journal: Journal, desk: Desk) 
     """
     exit, session.facts = Exit.INTERNAL, check_facts(journal)
     try:
+        if session.simulated:  # over a wire only the devices can tell
+            journal.of_the_twin()
         for told in unseen(campaign):
             desk.say(told)
             journal.tell(told)

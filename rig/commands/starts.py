@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -29,9 +30,18 @@ def run_ups(file: GearFile, torques: Sequence[float], load: float) -> list[RunUp
     """
     if not np.isfinite(torques).all():
         raise UsageError(f"--start {' '.join(f'{x:g}' for x in torques)}: expected torques in N·m")
+    file = broken_away(file)
     gears = [file.gear(), *drawn_gears(file)]
     refuse_load(gears[0], load)
     return [run_up(gears, tau, SECONDS, load) for tau in torques]
+
+
+def broken_away(file: GearFile) -> GearFile:
+    """With the torque at which the motor broke away from rest for its friction there, where only that was measured."""
+    measured, model = file.characteristics.get("tau_break"), file.parameters["tau_s"]
+    if measured is None or model.origin == "measured" or measured.value < file.parameters["tau_c"].value:
+        return file
+    return replace(file, parameters={**file.parameters, "tau_s": replace(measured, origin="measured")})
 
 
 def speeds_reached(made: Sequence[RunUp]) -> list[float]:
@@ -47,7 +57,10 @@ def lines(file: GearFile, torques: Sequence[float], made: Sequence[RunUp]) -> It
     drawn = made[0].turning.size - 1
     how = f"± 95 %: {drawn} gears drawn from the gear file" if drawn else "no intervals: nothing was measured"
     yield f"  ({how}; motor speed: mean from {0.8 * SECONDS:g} to {SECONDS:g} s; run up: 95 % of it)"
-    if (tau_s := file.parameters["tau_s"]).origin != "measured":
+    tau_s = broken_away(file).parameters["tau_s"]
+    if tau_s.origin == "measured":
+        yield f"  (breakaway {quantity(tau_s.value, tau_s.half)} N·m, measured)"
+    else:
         yield f"  breakaway was not measured (tau_s {tau_s.value:.3g} N·m {tau_s.origin}): what starts hangs on it"
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from rig.bench import BENCHES, read
+from rig.campaign import summary
 from rig.campaign.journal import Journal, new_journal, read_journal
 from rig.campaign.leaving import came_to_something, swept
 from rig.campaign.run import nothing_left
@@ -64,6 +65,14 @@ def test_a_refusal_before_the_first_row_leaves_no_folder_and_is_one_sentence(
     assert main(["campaign", "quick", "--out", str(tmp_path)]) == 3
     assert "hdrig: the rig is in fault: it is too hot" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_runs_over_a_wire_are_simulated_where_a_device_says_so(tmp_path: Path) -> None:
+    journal = new_journal(tmp_path, campaign(REST), "virtual", [])
+    journal.book["backend"] = "rig"
+    assert not next(summary.lines(journal)).startswith("SIMULATED")
+    journal.of_the_twin()
+    assert next(summary.lines(read_journal(journal.folder))).startswith("SIMULATED campaign")
 
 
 def interrupted(journal: Journal) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from rig.cli import main
 from rig.commands.simulate import beyond
-from rig.commands.starts import went
+from rig.commands.starts import lines, run_ups, went
 from rig.model.gearfile import Covered, GearFile, Parameter, write
 from rig.report.text.gear import breakaway_beside
 from tests.closing.test_compensate import gear
@@ -102,6 +102,18 @@ def test_a_breakaway_measured_at_rest_stands_beside_one_that_was_assumed() -> No
     measured = replace(file, parameters={**file.parameters, "tau_s": Parameter(0.5, (0.4, 0.6))})
     assert breakaway_beside(measured) == []
     assert breakaway_beside(gear()) == []
+
+
+def test_what_starts_goes_by_the_breakaway_that_was_measured() -> None:
+    broke = Parameter(0.51, (0.504, 0.516), runs=("a", "b"))
+    assumed = Parameter(0.3, origin="assumed")
+    file = replace(gear(), parameters={**gear().parameters, "tau_c": Parameter(0.3), "tau_s": assumed})
+    known = replace(file, characteristics={"tau_break": broke})
+    for one, turns in ((file, [True, True]), (known, [False, True])):
+        assert [bool(made.turning[0]) for made in run_ups(one, [0.45, 0.6], 0.0)] == turns
+    said = ["".join(lines(one, [0.6], run_ups(one, [0.6], 0.0))) for one in (file, known)]
+    assert "breakaway was not measured (tau_s 0.3 N·m assumed)" in said[0]
+    assert "breakaway 0.5100 ± 0.0060 N·m, measured" in said[1]
 
 
 UNITS = ("rpm", "N·m", "arcsec", "s")

@@ -287,6 +287,13 @@ def test_lost_counts_are_a_step_at_their_instant_and_nothing_else():
         assert (column[s.t > 1.5 + DT] == 1).all()
 
 
+def test_friction_by_load_of_hundreds_is_none():
+    effect = CATALOGUE["load_dependent_friction"]
+    shape = (0.0, 1.0, effect.POWER)
+    for size, possible in ((-0.1, False), (0.2, True), (600.0, False)):
+        assert effect.plausible(Fit(np.array([size]), shape, np.zeros((4, 4)), KNOWN, N)) is possible
+
+
 def test_lines_that_are_seen_are_tried_with_their_neighbours():
     tried = CATALOGUE["encoder_interpolation_error"].shapes(dataclasses.replace(REACH, counts_m=0.0, lines_m=(128,)))
     assert {(0.0, n) for n in (127.0, 128.0, 129.0, 255.0, 257.0)} == {shape for shape in tried if shape[0] == 0.0}

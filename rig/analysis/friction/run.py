@@ -14,8 +14,11 @@ from rig.analysis.identify.means import Mean, Sides, mean_of, variances
 from rig.analysis.identify.recording import Recording, plateaus, recording
 from rig.analysis.identify.slow import slow_series
 from rig.analysis.identify.solve import Solved
+from rig.analysis.kinematic_error.ratio import disagreement
+from rig.analysis.motion.degrees import turning_of
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.orders.revolutions import TERMS
+from rig.analysis.turning.units import unlikely_torque
 from rig.core.units import RPM
 from rig.model.fourier import FourierSeries
 
@@ -28,6 +31,14 @@ STILL = 1e-4  # N·m of asked torque: less is none
 
 def add_friction(found: Findings, run: Source, motion: Motion) -> None:
     """Add the figures of a run over several speeds. Says what is missing instead where it is."""
+    if wrong := _in_another_unit(run, motion):
+        found.checks.append(Check("unit", False, wrong))
+        found.sentence = "No friction was computed."
+        found.reject(wrong)
+        return
+    for doubtful in unlikely_torque(run):
+        found.cannot.append(doubtful)
+        found.inconclusive = doubtful
     _breakaway(found, run, motion)
     rec = recording(run)
     level = [] if rec is None else plateaus(rec)
@@ -59,6 +70,14 @@ def add_friction(found: Findings, run: Source, motion: Motion) -> None:
     _warming(found, means)
     _tables(found, means, best)
     found.sentence = _headline(total)
+
+
+def _in_another_unit(run: Source, motion: Motion) -> str:
+    """That the angles are not of one gear in rad: drags go by a speed; "" where nothing says so."""
+    if wrong := disagreement(motion):
+        return wrong
+    unit = turning_of(run, motion).in_degrees
+    return f"The unit of the angles looks wrong: {unit}." if unit else ""
 
 
 def _series(rec: Recording) -> FourierSeries:

@@ -15,6 +15,7 @@ from rig.analysis.stiffness.curve import Curve
 from rig.analysis.stiffness.drawn import add_curves
 from rig.analysis.stiffness.loop_words import add_creep, add_loop
 from rig.analysis.stiffness.measure import SENSOR_GAIN, Stiffness, measure, windup_of
+from rig.analysis.stiffness.other_units import torques_apart, winds_beyond
 from rig.analysis.stiffness.path import Path, path_of
 from rig.analysis.stiffness.spring_words import (
     add_cubic,
@@ -26,7 +27,6 @@ from rig.analysis.stiffness.spring_words import (
     parts_of,
     value_of,
 )
-from rig.analysis.stiffness.two_torques import torques_apart
 from rig.core.units import DEG, TURN
 
 MOVES = 0.05  # of the wind-up: a load that moves more is not locked
@@ -44,7 +44,7 @@ def add_stiffness(found: Findings, run: Source, motion: Motion, reference: Sourc
         found.sentence = "The shaft torque falls as the gear is wound up: one sensor has the wrong sign."
         found.reject(found.sentence)
         return
-    apart = torques_apart(motion, tau, motion.pick(run.column("tau_m")))
+    apart = winds_beyond(motion) or torques_apart(motion, tau, motion.pick(run.column("tau_m")))
     if apart:
         found.cannot.append(apart)
         found.inconclusive = apart

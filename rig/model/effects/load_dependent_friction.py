@@ -36,6 +36,7 @@ class LoadDependentFriction(Effect):
         {"exponent": (1.0,), "law": (POWER, SATURATING)}
     )
     AT: Final = 20.0  # N·m, where μ_L is told: the middle of a load sweep
+    MOST: Final = 3.0  # of μ_L: a gear that loses as much as it gives has 1; hundreds are a torque in another unit
     UNSURE: Final = 0.25  # of the larger μ_L, how negative noise may make the other
     EXPONENTS: Final = (0.4, 2.0)  # Hertzian contacts 2/3, dry friction 1, bending of the cup 2
 
@@ -72,6 +73,6 @@ class LoadDependentFriction(Effect):
         return (*shares, parameter("exponent", fit.shape[1], half, "1"))
 
     def plausible(self, fit: Fit) -> bool:
-        """Losses grow with the load and give no energy back, whichever way the power flows."""
+        """Losses grow with the load, by no more than it MOST times, and give no energy back whichever way it flows."""
         most, least = float(np.max(fit.coefficients)), float(np.min(fit.coefficients))
-        return most > 0 and least > -self.UNSURE * most
+        return 0 < most < self.MOST and least > -self.UNSURE * most

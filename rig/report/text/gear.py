@@ -117,7 +117,7 @@ def breakaway_beside(file: GearFile) -> list[str]:
         return []
     return [
         f"  the motor broke away at {quantity(measured.value, measured.half, 'N·m')} ({counted(measured.runs)}), "
-        f"tau_s of the model is {model.value:.4g} N·m ({model.origin}): simulate --start goes by tau_s"
+        f"tau_s of the model is {model.value:.4g} N·m ({model.origin}): simulate --start goes by what was measured"
     ]
 
 

@@ -181,7 +181,8 @@ def _ratio(run: Converted, mapping: Mapping) -> str:
     if measured < 0 and fits:
         sign = mapping.channels["theta_l"].sign
         said += f", so one angle runs the wrong way: set channels.theta_l.sign = {-sign} (it must follow the motor)"
-    hint = next((f"; they differ by about {text}" for f, text in HINTS if abs(factor / f - 1) < 0.05), "")
+    near = {abs(factor / f - 1): text for f, text in HINTS}
+    hint = f"; they differ by about {near[min(near)]}" if min(near) < 0.05 else ""
     return said + ("" if measured < 0 and fits else f"; gear.ratio = {declared:g} does not fit") + hint
 
 

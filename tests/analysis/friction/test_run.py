@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rig.analysis import analyse
+from rig.analysis.findings.result import Verdict
 from rig.analysis.identify.friction import motor_friction
 from rig.analysis.identify.means import Mean, Torque
 from rig.bench import read, twin_parameters
@@ -63,6 +64,16 @@ def test_friction_that_falls_while_the_run_goes_on_is_a_drift(run: MemoryRun) ->
     drift = next(e for e in result.estimates if e.name == "friction_drift")
     assert drift.value < -5.0
     assert not next(c for c in result.checks if c.name == "warm").passed
+
+
+@pytest.mark.slow
+def test_angles_of_another_gear_give_no_friction_and_torques_of_none_settle_nothing(run: MemoryRun) -> None:
+    degrees = analyse(replace(run, columns={**run.columns, "theta_m": np.degrees(run.columns["theta_m"])}))
+    assert degrees.estimates == ()
+    assert "θ_m seems to be in degrees" in degrees.sentence
+    shown = analyse(replace(run, columns={**run.columns, "tau_m": 1e3 * run.columns["tau_m"]}))
+    assert shown.verdict is Verdict.INCONCLUSIVE
+    assert any("The unit of tau_m may be another one" in s for s in shown.cannot)
 
 
 def test_a_run_at_one_speed_settles_nothing_and_says_so() -> None:

@@ -58,7 +58,7 @@ def test_plateaus_under_one_torque_are_one_stretch(slow_and_wandering: Recording
     assert (joined[0].lo, joined[0].hi <= level[-1].hi) == (level[0].lo, True)
 
 
-def test_plateaus_under_two_torques_or_none_known_stay_apart(slow_and_wandering: Recording) -> None:
+def test_plateaus_under_other_units_or_none_known_stay_apart(slow_and_wandering: Recording) -> None:
     level = plateaus(slow_and_wandering)
     columns = slow_and_wandering.source.columns  # type: ignore[attr-defined]
     asked = columns["tau_ask"].copy()

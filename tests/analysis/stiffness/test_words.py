@@ -113,3 +113,12 @@ def test_a_gear_that_is_wound_up_from_its_output_tells_nothing_of_a_motor_that_a
     held = {"theta_m": np.zeros_like(t), "theta_l": -w, "tau_l": 7160 * w, "tau_m": 1e-3 * np.sin(t)}
     result = analyse(MadeRun({"t": t, **held}, {"procedure": "stiffness_lock", "gear": {"ratio": 50}}))
     assert "another unit" not in result.sentence
+
+
+def test_a_wind_up_that_is_no_gears_is_told_and_nothing_is_judged() -> None:
+    t = np.arange(0, 20.0, 0.004)
+    w = np.linspace(-0.007, 0.007, t.size) * 180 / np.pi
+    columns = {"t": t, "theta_m": 50 * w, "theta_l": np.zeros_like(t), "tau_l": 7160 * np.pi / 180 * w}
+    result = analyse(MadeRun(columns, {"procedure": "stiffness_lock", "gear": {"ratio": 50}}))
+    assert "the gear would be wound up by 46° from end to end, expected less than 3°" in result.sentence
+    assert result.verdict is Verdict.INCONCLUSIVE

@@ -108,7 +108,7 @@ def test_a_lock_test_is_told_beside_others_of_any_travel(channel: str, change: A
     assert words in said
 
 
-def test_the_only_lock_test_is_told_by_its_two_torques() -> None:
+def test_the_only_lock_test_is_told_by_its_other_units() -> None:
     odd = lock(tau_l=in_mNm)
     assert "expected 0.05 to 5" in odd_balances([odd])[odd.name]
     assert odd_balances([lock()]) == {}

@@ -1,4 +1,4 @@
-"""Whether the motor could have wound the gear up by what the torque sensor reads."""
+"""Whether the motor could have wound the gear up by what the torque sensor reads, and whether any gear winds up so."""
 
 from __future__ import annotations
 
@@ -9,10 +9,24 @@ import numpy as np
 from rig.analysis.findings.result import Array
 from rig.analysis.motion.source import Motion
 from rig.analysis.stiffness.measure import windup_of
+from rig.core.units import DEG
 
 MOST: Final = 3.0  # times N·τ_m: a gear gives less than that, and two sensors agree to some per cent
 LEAST: Final = 0.05  # of N·τ_m: friction takes most of a small torque, and not that much of a large one
 BY_THE_MOTOR: Final = 0.5  # of the wind-up that its angle goes: else it is held, and may be by a brake
+
+WINDS: Final = 3.0 * DEG  # from end to end: at their limits, gears of any size and make wind up by less than a degree
+
+
+def winds_beyond(motion: Motion) -> str:
+    """A sentence where the wind-up θ_m/N − θ_l is no gear's; "" where it may be one's."""
+    wound = float(np.ptp(windup_of(motion)))
+    if wound < WINDS:
+        return ""
+    return (
+        f"One of the angles seems to be in another unit: the gear would be wound up by {wound / DEG:.3g}° from end to "
+        f"end, expected less than {WINDS / DEG:g}°; stiffness goes by it."
+    )
 
 
 def torques_apart(motion: Motion, tau_l: Array, tau_m: Array | None) -> str:
