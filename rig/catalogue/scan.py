@@ -1,7 +1,8 @@
-"""Every run below a folder, from its manifest alone; a damaged manifest is a row that says what is wrong with it."""
+"""Every run below a folder, from its manifest; a damaged one is a row that says what is wrong with it."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +14,7 @@ from rig.catalogue.row import UNREADABLE, Row, row_of, text
 from rig.core.errors import UsageError
 from rig.runfile import manifest
 from rig.runfile.copies import Seen, Twice, originals_first, passed_over
-from rig.runfile.doubt import doubt, quick_doubt
+from rig.runfile.doubt import RESULT, doubt, quick_doubt
 from rig.runfile.listing import Unread, is_run, passed_by, run_folders
 from rig.runfile.process import is_being_made
 from rig.runfile.remains import advice
@@ -117,7 +118,19 @@ def _fresh(path: str) -> tuple[Row, dict[str, Any]]:
         about = manifest.read(folder)
     except UsageError as error:
         return Row(folder, status=UNREADABLE, problem=str(error)), {}
-    return row_of(folder, about), {key: about[key] for key in ASKED if key in about}
+    found = row_of(folder, about)
+    if not found.verdict and "files" not in about:  # somebody else's manifest is kept as it is: see `analyse_folder`
+        found = replace(found, verdict=_verdict_beside(folder))
+    return found, {key: about[key] for key in ASKED if key in about}
+
+
+def _verdict_beside(folder: Path) -> str:
+    """That of the result in a folder; "" where none is, or none can be read."""
+    try:
+        found = json.loads((folder / RESULT).read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return ""
+    return text(found.get("verdict")) if isinstance(found, dict) else ""
 
 
 _read = Remembered(_fresh)

@@ -11,6 +11,7 @@ from rig.runfile.events import EventLog
 from rig.session.observer import Observer
 from rig.supervisor import Act, State
 
+CLEAR = "keep clear of it"  # said of a rig that holds torque or turns on: it is ready for nothing
 KINDS = {Act.TRIP: "trip", Act.HOLD: "operator", Act.STOP: "operator", Act.HALT: "operator"}
 
 
@@ -34,7 +35,8 @@ class SessionLog:
         """The supervisor's change of state, as an event."""
         text = f"{state}: {why}" if why else str(state)
         if act is Act.HALT:  # "ready" in front of a halt would be understood by nobody
-            text = f"{why}; the drive confirms it, the rig is {state} for another run"
+            ready = "" if CLEAR in why else f", the rig is {state} for another run"
+            text = f"{why}; the drive confirms it{ready}"
         self.event(KINDS.get(act, "state"), text)
 
     def event(self, kind: str, text: str) -> None:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from rig.catalogue import remembered, runs
 from rig.catalogue.filter import asked
+from rig.catalogue.scan import passing
 from rig.cli import main
 from rig.core import in_order
 from rig.core.errors import UsageError
@@ -68,6 +69,23 @@ def test_a_run_folder_lists_itself_as_for_every_other_verb(tmp_path: Path, capsy
     assert [row.path for row in runs(folder)] == [folder]
     assert main(["list", str(folder)]) == 0
     assert str(folder) in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("written", "shown"), [('{"verdict": "INCONCLUSIVE"}', "INCONCLUSIVE"), ("{", ""), ("[]", "")], ids=str
+)
+def test_a_run_of_somebody_else_has_the_verdict_of_the_result_beside_it(
+    tmp_path: Path, written: str, shown: str
+) -> None:
+    folder = run(tmp_path, "2026-11-18", verdict=None)
+    about = json.loads((folder / "manifest.json").read_text())
+    about.pop("files", None)
+    (folder / "manifest.json").write_text(json.dumps(about))
+    (folder / "result.json").unlink()
+    assert [row.ruling for row in runs(tmp_path, asked(verdict="none"))] == [""]
+    (folder / "result.json").write_text(written)
+    assert main(["list", str(tmp_path), "--verdict", shown or "none"]) == 0
+    assert [row.ruling for row in passing([tmp_path])] == [shown]
 
 
 def test_several_folders_are_one_list_in_order(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
