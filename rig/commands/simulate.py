@@ -37,6 +37,8 @@ HEAD = (  # each ends in its unit; p-p is peak to peak over one turn of the wave
     "shaft torque τ_l p-p, N·m",
 )
 
+SPEED, TORQUE = 0, 1  # of these, which one may be held
+
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig simulate`."""
@@ -76,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
     else:
         waves = [_found(at_speed, gear, rpm * RPM, args.load, f"{rpm:g} rpm") for rpm in args.speed or SPEEDS]
     print(f"SIMULATED by equations 6-7 from {args.gear}, gear {file.serial or '(no serial)'}, load {args.load:g} N·m")
-    print(describe(file, waves, args.load))
+    print(describe(file, waves, args.load, by_torque=bool(args.torque)))
     for sentence in beyond(file, [wave.mean_speed / RPM for wave in waves], args.load):
         print(sentence)
     if args.out is not None:
@@ -157,9 +159,9 @@ def figures(wave: Waveform) -> Array:
     return np.array([*head, float(np.ptp(wave.shaft_torque)), *orders])
 
 
-def describe(file: GearFile, waves: Sequence[Waveform], load: float) -> str:
-    """The table, with 95 % intervals where the gear file has any."""
-    from rig.model.simulate import at_speed
+def describe(file: GearFile, waves: Sequence[Waveform], load: float, by_torque: bool = False) -> str:
+    """The table, with 95 % intervals where the gear file has any: of what is not held, speed or torque, as well."""
+    from rig.model.simulate import at_speed, steady_state
     from rig.model.simulate.spread import drawn_gears, half_widths
     from rig.report.numbers import quantity
 
@@ -167,11 +169,11 @@ def describe(file: GearFile, waves: Sequence[Waveform], load: float) -> str:
     names = (*HEAD, *(f"amplitude of θ̃, order {n}, arcsec" for n in range(1, ORDERS + 1)))
     columns = []
     for wave in waves:
-        speed = wave.mean_speed
-        halves = half_widths(gears, lambda g, speed=speed: figures(at_speed(g, speed, load)))  # type: ignore[misc]
+        solve, held = (steady_state, wave.tau) if by_torque else (at_speed, wave.mean_speed)
+        halves = half_widths(gears, lambda g, solve=solve, held=held: figures(solve(g, held, load)))  # type: ignore[misc]
         values = figures(wave)
         halves = np.resize(halves, values.size)
-        halves[0] = np.nan  # the speed is held; its torque is what is uncertain
+        halves[TORQUE if by_torque else SPEED] = np.nan
         columns.append([quantity(v, h) for v, h in zip(values, halves, strict=True)])
     width = max(len(n) for n in names)
     lines = [f"  {n:{width}s}  " + "  ".join(f"{c[i]:>18s}" for c in columns) for i, n in enumerate(names)]

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 
 from rig.cli import main
-from rig.commands.simulate import beyond
+from rig.commands.simulate import beyond, describe
 from rig.commands.starts import lines, run_ups, went
+from rig.core.units import RPM
 from rig.model.gearfile import Covered, GearFile, Parameter, write
+from rig.model.simulate import at_speed
 from rig.report.text.gear import breakaway_beside
 from tests.closing.test_compensate import gear
 
@@ -102,6 +104,15 @@ def test_a_breakaway_measured_at_rest_stands_beside_one_that_was_assumed() -> No
     measured = replace(file, parameters={**file.parameters, "tau_s": Parameter(0.5, (0.4, 0.6))})
     assert breakaway_beside(measured) == []
     assert breakaway_beside(gear()) == []
+
+
+def test_what_is_held_has_no_interval_and_what_is_not_has_one() -> None:
+    friction = Parameter(0.3, (0.29, 0.31))
+    file = replace(gear(), parameters={**gear().parameters, "tau_c": friction, "tau_s": friction})
+    wave = at_speed(file.gear(), 300 * RPM, 0.0)
+    for by_torque in (False, True):
+        speed, torque = describe(file, [wave], 0.0, by_torque).splitlines()[:2]
+        assert ("±" in speed, "±" in torque) == (by_torque, not by_torque)
 
 
 def test_what_starts_goes_by_the_breakaway_that_was_measured() -> None:
