@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from rig.core.errors import Ended, NotReady, RecorderError
 from rig.core.operator import HangWeight
 from rig.core.sample import Sample
 from rig.procedures.standstill import Standstill
+from rig.procedures.weigh import Weigh
 from rig.process.interrupts import Interrupts
 from rig.runfile.run import Run
 from rig.session import Session, Watch
@@ -66,6 +68,15 @@ def test_a_motor_that_a_weight_turns_is_not_energised(session: Session, monkeypa
         session.run(Standstill(1.0))
     assert not energised
     assert session.folder is None
+
+
+def test_a_weighing_says_what_it_found_beside_what_was_expected(session: Session) -> None:
+    assert session.instruments.operator is not None
+    session.instruments.operator.make(HangWeight(5.0))
+    said = session.run(Weigh(tau_ext=4.0)).ending.finding.sentence
+    found = re.search(r"; (\S+) N·m on the output by that, \+4 N·m expected", said)
+    assert found
+    assert float(found.group(1)) == pytest.approx(5.0, abs=0.1)
 
 
 def test_who_asks_for_an_end_is_not_kept_waiting_for_a_motor_that_turns(session: Session) -> None:

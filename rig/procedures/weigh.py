@@ -86,7 +86,11 @@ class Weigh(Procedure):
             )
         forward = yield from self._leg(setting, +1)
         reverse = yield from self._leg(setting, -1)
-        return weighing(standstill, forward, reverse)
+        found = weighing(standstill, forward, reverse)
+        if not self.tau_ext:
+            return found
+        beside = f"; {self.zero - found.torque:+.2f} N·m on the output by that, {self.tau_ext:+g} N·m expected"
+        return found._replace(sentence=found.sentence + beside)
 
     def _rest(self) -> Generator[Setpoint, Sample, float]:
         sample = yield Torque(0.0)
