@@ -7,6 +7,7 @@ word, it gives the terminal back its echo.
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import signal
@@ -29,7 +30,9 @@ def main() -> None:
         for line in sys.stdin.buffer:
             screen.take(json.loads(line))
         screen.close()
-    except (OSError, ValueError):  # nobody looks any more
+    except (OSError, ValueError) as lost:  # nobody looks any more
+        if isinstance(lost, OSError) and lost.errno != errno.EPIPE:
+            print(f"hdrig: what was to be printed could not be written: {lost}", file=sys.stderr)
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         for _ in sys.stdin.buffer:  # or the loop would meet a closed pipe
             pass

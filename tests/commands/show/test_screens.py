@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import os
+import subprocess
+import sys
 from typing import Any
 
 import pytest
@@ -185,3 +187,16 @@ class Described(io.StringIO):
 
     def fileno(self) -> int:
         return 1
+
+
+def test_a_disk_that_takes_no_more_lines_is_said_once() -> None:
+    event = b'{"event": "note", "utc": "2026-11-30T12:00:00+00:00", "text": "tared"}\n'
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "rig.commands.show.painter", "json"],
+            input=3 * event,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            check=True,
+        )
+    assert done.stderr.decode().count("could not be written: [Errno 28]") == 1
