@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from rig.analysis.tracing.rest import bursts
+from rig.analysis.tracing.rest import bursts, strikes
 from rig.analysis.tracing.rest.bursts import burst, loudest_burst
+from rig.analysis.tracing.rest.strikes import striking
 
 RATE = 120.0  # rows per second
 KEY = (0, "M")
@@ -22,7 +23,8 @@ def eq(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Equations of runs whose clocks are given by `times`."""
     times: dict[Any, np.ndarray] = {}
     speeds: dict[Any, np.ndarray] = {}
-    monkeypatch.setattr(bursts, "clock", lambda eq, key: times[key])
+    for module in (bursts, strikes):
+        monkeypatch.setattr(module, "clock", lambda eq, key: times[key])
     monkeypatch.setattr(bursts, "at_rows", lambda eq, key, name: speeds.get(key, np.full(times[key].size, 10.0)))
     return SimpleNamespace(times=times, speeds=speeds, runs=[SimpleNamespace(ratio=50.0, step_m=STEP, step_l=0.0)] * 3)
 
@@ -102,3 +104,35 @@ def test_friction_that_wanders_within_a_second_is_no_burst(eq: Any) -> None:
     assert loudest_burst(eq, e) is None
     e[KEY][300:420] += 0.02
     assert loudest_burst(eq, e) is not None
+
+
+def struck(eq: Any, rng: np.random.Generator, jitter: float) -> dict[tuple[int, str], np.ndarray]:
+    """Three runs with a dip of a quarter of a second every 5.66 s or so, each with a phase of its own."""
+    eq.timed = True
+    e = {}
+    for run, seconds in enumerate((65.0, 65.0, 40.0)):
+        e[run, "M"] = noise(eq, rng, seconds, (run, "M"))
+        t = eq.times[run, "M"] - 300.0
+        for k in range(int(seconds / 5.66)):
+            since = t - (1.0 + 0.7 * run + 5.66 * k + jitter * rng.uniform(-1, 1))
+            e[run, "M"] -= 0.043 * np.where((since > 0) & (since < 0.25), np.sin(4 * np.pi * since) ** 2, 0.0)
+    return e
+
+
+def test_what_strikes_in_every_run_stands_out_and_comes_evenly(eq: Any, rng: np.random.Generator) -> None:
+    e = struck(eq, rng, 0.0)
+    assert loudest_burst(eq, e) is not None
+    assert striking(eq, e, "M") == pytest.approx(1 / 5.66, rel=0.01)
+    assert striking(eq, e, "L") is None
+
+
+def test_what_strikes_at_odd_moments_does_not(eq: Any, rng: np.random.Generator) -> None:
+    e = struck(eq, rng, 2.5)
+    assert loudest_burst(eq, e) is not None
+    assert striking(eq, e, "M") is None
+
+
+def test_without_a_clock_nothing_strikes(eq: Any, rng: np.random.Generator) -> None:
+    e = struck(eq, rng, 0.0)
+    eq.timed = False
+    assert striking(eq, e, "M") is None

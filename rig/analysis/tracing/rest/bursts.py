@@ -24,6 +24,7 @@ LENGTH: Final = 0.5  # s
 FEWEST: Final = 12  # half seconds in a run: of fewer the usual one is not known
 LIKE: Final = 1.5  # times another speed: what either leaves is about the same
 LOUDER: Final = 4.0  # times the RMS of other runs: of noise as slow as half a second one in 16 000 is
+BURSTS: Final = 2.0  # times its usual half second: friction that wanders has 1.5, and what strikes at times more
 OTHERS: Final = 3  # runs of which the middle one's RMS is known
 SLOW: Final = 0.5  # rad/s of the motor: below that speeds are all alike
 
@@ -40,14 +41,26 @@ class Burst:
 
 def loudest_burst(eq: Equations, e: Mapping[Key, Array]) -> Burst | None:
     """Of all residuals (n,) by run and channel, reversals left out; None where nothing stands out."""
-    found = (burst(eq, key, e[key], _of_others(key, e)) for key in e if key[1] != "R")
+    levels = {key: _level(eq, key, x) for key, x in e.items()}
+    found = (burst(eq, key, e[key], _of_others(key, levels)) for key in e if key[1] != "R")
     return max((b for b in found if b is not None), key=lambda b: b.over, default=None)
 
 
-def _of_others(key: Key, e: Mapping[Key, Array]) -> float:
-    """RMS of the middle one of the other runs of that channel; 0 where there are too few."""
-    levels = [float(np.sqrt(np.mean(x**2))) for other, x in e.items() if other != key and other[1] == key[1]]
-    return float(np.median(levels)) if len(levels) >= OTHERS else 0.0
+def _level(eq: Equations, key: Key, e: Array) -> float:
+    """RMS of a run; of one that is bursts mostly, that of its usual half seconds: what every run has would stand out in
+    none."""
+    _, levels, speeds = half_seconds(eq, key, e)
+    whole = float(np.sqrt(np.mean(e**2)))
+    if levels.size < FEWEST:
+        return whole
+    usual = float(np.sqrt(np.mean(_usual(levels, speeds) ** 2)))
+    return usual if whole > BURSTS * usual else whole
+
+
+def _of_others(key: Key, levels: Mapping[Key, float]) -> float:
+    """That of the middle one of the other runs of a channel; 0 where there are too few."""
+    others = [level for other, level in levels.items() if other != key and other[1] == key[1]]
+    return float(np.median(others)) if len(others) >= OTHERS else 0.0
 
 
 def burst(eq: Equations, key: Key, e: Array, of_others: float = 0.0) -> Burst | None:
@@ -63,6 +76,12 @@ def burst(eq: Equations, key: Key, e: Array, of_others: float = 0.0) -> Burst | 
     if over < BURST_RUN or not loud.size:
         return None
     return Burst(key, float(t[loud[0]]), float(t[loud[-1]]) + LENGTH, over)
+
+
+def loud_half_seconds(eq: Equations, key: Key, e: Array) -> Array:
+    """When those begin that stand out against the rest of their run, since that did [s]."""
+    t, levels, speeds = half_seconds(eq, key, e)
+    return t if levels.size < FEWEST else np.asarray(t[levels > BURST * _usual(levels, speeds)])
 
 
 def _usual(levels: Array, speeds: Array) -> Array:

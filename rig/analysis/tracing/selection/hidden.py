@@ -23,6 +23,7 @@ from rig.analysis.tracing.rest.joined import Rest
 from rig.analysis.tracing.rest.levels import friction_by_speed, of_turning
 from rig.analysis.tracing.rest.locks import lock_tests_differ
 from rig.analysis.tracing.rest.same_spring import same_spring
+from rig.analysis.tracing.rest.strikes import striking
 from rig.analysis.tracing.rest.ticking import largest, ticking
 from rig.analysis.tracing.rest.unknown import home
 from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER
@@ -204,6 +205,9 @@ def _in_a_burst(p: Prepared, s: Solution) -> Conclusion | None:
         where = home(p.eq, {key: e[key] for key in levels}, levels)
         coordinate = where[0].coordinate if where else "time"
         what = f"it lives in {coordinate.replace('_', ' ')}"
+    hz = None if quiet else striking(p.eq, e, found.key[1])
+    if hz is not None:
+        coordinate, what = "time_periodic", f"such seconds come evenly, every {1.0 / hz:.3g} s, in all runs like it"
     when = f"{found.since:.1f} and {found.until:.1f} s"
     if not p.eq.timed:
         when = f"rows {found.since * run.rate:.0f} and {found.until * run.rate:.0f}"
@@ -212,7 +216,7 @@ def _in_a_burst(p: Prepared, s: Solution) -> Conclusion | None:
         f"{found.over:.1f} times its usual half second; {what}. It is in the floor, and no effect of the library "
         "explains it."
     )
-    verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, None, sentence)
+    verdict = Verdict(Status.UNKNOWN, (), (), coordinate, None, hz, sentence)
     return Conclusion(verdict, None, (coordinate,), along(coordinate))
 
 
