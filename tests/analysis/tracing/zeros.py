@@ -21,9 +21,11 @@ def solution_of(
     zeros: Sequence[float] | np.ndarray,
     speeds: np.ndarray,
     torque: float,
+    weights: np.ndarray | float = 0.0,
 ) -> tuple[Any, list[int], range]:
     """Of runs of 20 s, a minute apart, at those speeds [rad/s], with those zeros of θ̃ [rad] as `module` reads them;
-    the fitted ones, and every third, unseen. `torque` [N·m per rad] is what the load's balance shows of the zeros."""
+    the fitted ones, and every third, unseen. `torque` [N·m per rad] is what the load's balance shows of the zeros,
+    `weights` what hung on the output [N·m]."""
     times = 60.0 * np.arange(speeds.size)
     runs = [
         SimpleNamespace(
@@ -31,9 +33,9 @@ def solution_of(
             has=MEASURED,
             mean_torque=0.5 * np.sign(v),
             turning=abs(v),
-            pieces=[SimpleNamespace(t=np.array([t, t + 20.0]), omega_m=np.full(2, v))],
+            pieces=[SimpleNamespace(t=np.array([t, t + 20.0]), omega_m=np.full(2, v), tau_ext=np.full(2, w))],
         )
-        for t, v in zip(times, speeds, strict=True)
+        for t, v, w in zip(times, speeds, np.broadcast_to(weights, speeds.shape), strict=True)
     ]
     eq = SimpleNamespace(runs=runs, rows={(i, c) for i in range(speeds.size) for c in "AL"})
     s = SimpleNamespace(design=SimpleNamespace(eq=eq, terms=()), value=lambda name: {"compliance": SOFT}[name])

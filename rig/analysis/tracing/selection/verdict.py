@@ -21,6 +21,7 @@ from rig.analysis.tracing.rest.joined import loudness
 from rig.analysis.tracing.rest.uneven_drag import UnevenDrag, uneven_drag
 from rig.analysis.tracing.rest.uneven_friction import UnevenFriction, uneven_friction
 from rig.analysis.tracing.rest.warm_zeros import warm_zeros
+from rig.analysis.tracing.rest.zeros_by_load import zeros_by_load
 from rig.analysis.tracing.rest.zeros_by_speed import zeros_by_speed
 from rig.analysis.tracing.rest.zeros_by_way import zeros_by_way
 from rig.analysis.tracing.runs.recording import read_by_any
@@ -157,9 +158,15 @@ def _falls(p: Prepared, before: Mapping[Key, Array], after: Mapping[Key, Array])
 
 
 def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Key, float]) -> Conclusion | None:
-    """Little or nothing is above the floor, but the zeros of the runs follow the temperature, drift, or go with the
-    speed, by more than it; None where they do not. Names stand beside it."""
-    ways = (("temperature", warm_zeros), ("time", drifting_zeros), ("speed", zeros_by_speed), ("speed", zeros_by_way))
+    """Little or nothing is above the floor, but the zeros of the runs follow the temperature, drift, or go with
+    speed or load, by more than it; None where they do not. Names stand beside it."""
+    ways = (
+        ("temperature", warm_zeros),
+        ("time", drifting_zeros),
+        ("speed", zeros_by_speed),
+        ("speed", zeros_by_way),
+        *(() if names else (("load", zeros_by_load),)),  # what a name has wrong of its law goes with the load
+    )
     found = ((where, of(s, p.split.fitted, p.split.held_out)) for where, of in ways)
     where, drift = next(((where, one) for where, one in found if one is not None), ("", None))
     if drift is None or abs(drift.size) < DRIFTS * np.median([x for (_, c), x in floors.items() if c == "A"]):
