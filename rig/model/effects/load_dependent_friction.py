@@ -73,6 +73,6 @@ class LoadDependentFriction(Effect):
         return (*shares, parameter("exponent", fit.shape[1], half, "1"))
 
     def plausible(self, fit: Fit) -> bool:
-        """Losses grow with the load, by no more than it MOST times, and give no energy back whichever way it flows."""
+        """Losses grow with the load, stay below a few times it, and give no energy back, whichever way it flows."""
         most, least = float(np.max(fit.coefficients)), float(np.min(fit.coefficients))
         return 0 < most < self.MOST and least > -self.UNSURE * most

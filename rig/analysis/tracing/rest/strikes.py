@@ -18,6 +18,7 @@ from rig.core.units import TURN
 from rig.model.effect import Array
 
 FEWEST: Final = 5  # in a run: four lie evenly by chance
+RUNS: Final = 2  # with so many: at one speed, what is passed once a turn comes evenly as well
 TOGETHER: Final = 0.9  # |Σ exp(iφ)| over their number: twenty at random reach 0.6 at one of so many frequencies
 FASTEST: Final = 0.5  # Hz: half seconds that stand out are two apart at least
 PERIODS: Final = 3.0  # in the longest run at least
@@ -30,7 +31,7 @@ def striking(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | Non
     if not eq.timed:
         return None
     times = [t for key, x in e.items() if key[1] == channel and (t := strikes(eq, key, x)).size >= FEWEST]
-    if not times:
+    if len(times) < RUNS:
         return None
     longest = max(float(np.ptp(t)) for t in times)
     hz = np.arange(PERIODS / longest, FASTEST, 1.0 / (FINER * longest))
