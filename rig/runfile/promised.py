@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rig.core.numbers import number
-from rig.core.rows import Array
+from rig.core.rows import Array, spread
 from rig.runfile import archive
 
 APART = 5.0  # times: loops that miss ticks stay nearer to their rate, and units of time are at least 60 apart
@@ -35,7 +35,7 @@ def time_untold(about: Mapping[str, Any], t: Array | None) -> str:
     loop = about.get("loop")
     rate = number(loop.get("rate") if isinstance(loop, Mapping) else None)
     # of a run of hours a few thousand rows tell as much as all, and take no memory
-    at = np.unique(np.linspace(0, t.size - 2, min(LOOKED_AT, t.size - 1)).astype(int))
+    at = spread(t.size - 1, LOOKED_AT)
     at = at[np.isfinite(t[at]) & np.isfinite(t[at + 1])]
     if at.size < 2:
         return ""

@@ -15,7 +15,7 @@ MOST: Final = 3.0  # times N·τ_m: a gear gives less than that, and two sensors
 LEAST: Final = 0.05  # of N·τ_m: friction takes most of a small torque, and not that much of a large one
 BY_THE_MOTOR: Final = 0.5  # of the wind-up that its angle goes: else it is held, and may be by a brake
 
-WINDS: Final = 3.0 * DEG  # from end to end: at their limits, gears of any size and make wind up by less than a degree
+WINDS: Final = 3.0 * DEG  # from end to end: some twenty times what the paper's gear winds up by at 10 N·m either way
 
 
 def winds_beyond(motion: Motion) -> str:

@@ -24,7 +24,7 @@ LENGTH: Final = 0.5  # s
 FEWEST: Final = 12  # half seconds in a run: of fewer the usual one is not known
 LIKE: Final = 1.5  # times another speed: what either leaves is about the same
 LOUDER: Final = 4.0  # times the RMS of other runs: of noise as slow as half a second one in 16 000 is
-BURSTS: Final = 2.0  # times its usual half second: friction that wanders has 1.5, and what strikes at times more
+BURSTS: Final = 2.0  # times its usual half second: runs of clean campaigns have 1.1, of exam 98, case 04, 2.6 to 3.6
 OTHERS: Final = 3  # runs of which the middle one's RMS is known
 SLOW: Final = 0.5  # rad/s of the motor: below that speeds are all alike
 
