@@ -52,7 +52,7 @@ class ZerosByLoad:
 
 
 def zeros_by_load(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> ZerosByLoad | None:
-    """None where θ̃'s zeros go with no weight, or nearly as well with speed or time, or where the wind-up that shifts them was
+    """None where θ̃'s zeros go with no weight, or as well with speed or time, or where the wind-up that shifts them was
     not measured."""
     eq = s.design.eq
     mine, others = (free(eq, runs) for runs in (fitted, unseen))

@@ -207,7 +207,8 @@ def _in_a_burst(p: Prepared, s: Solution) -> Conclusion | None:
         what = f"it lives in {coordinate.replace('_', ' ')}"
     hz = None if quiet else striking(p.eq, e, found.key[1])
     if hz is not None:
-        coordinate, what = "time_periodic", f"such seconds come evenly, every {1.0 / hz:.3g} s, in the runs that have several"
+        coordinate = "time_periodic"
+        what = f"such seconds come evenly, every {1.0 / hz:.3g} s, in the runs that have several"
     when = f"{found.since:.1f} and {found.until:.1f} s"
     if not p.eq.timed:
         when = f"rows {found.since * run.rate:.0f} and {found.until * run.rate:.0f}"
