@@ -39,9 +39,20 @@ def reference_of_one_zero(run: Run) -> Run | None:
     it was switched off in between, and then the slope of another part of the error would be taken off.
 
     Of the same session; else of another one, where a proof of the lock test's own session shows the zero to be that of
-    the slow run: a campaign that was stopped and taken up again.
+    the slow run: a campaign that was stopped and taken up again; else of whatever session, where the lock test shows
+    it: runs that another program made say nothing of sessions.
     """
-    return _beside(run, _one_session) or _of_another_session(run)
+    return _beside(run, _one_session) or _of_another_session(run) or _bent_alike(run)
+
+
+def _bent_alike(run: Run) -> Run | None:
+    from rig.analysis.across_runs.wound_up import shown_by_windup
+    from rig.analysis.kinematic_error.reference import kinematic_error_reference
+    from rig.analysis.motion.tame import Tame
+
+    slow = _beside(run, _alike)
+    series = None if slow is None else kinematic_error_reference(Tame(slow))
+    return slow if series is not None and shown_by_windup(Tame(run), series) else None
 
 
 def _of_another_session(run: Run) -> Run | None:

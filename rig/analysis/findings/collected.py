@@ -49,9 +49,20 @@ class Findings:
         """The figures added from here on are shown and do not count."""
         self.rejected, self.believed = why, len(self.estimates)
 
-    def figure(self, name: str, label: str, value: float, unit: str, half: float, how: str, *parts: Part) -> None:
-        """Add an estimate given as value ± half width of its 95 % interval, and what that is made of."""
-        self.estimates.append(Estimate(name, label, value, unit, (value - half, value + half), how, parts))
+    def figure(
+        self,
+        name: str,
+        label: str,
+        value: float,
+        unit: str,
+        half: float,
+        how: str,
+        *parts: Part,
+        over: tuple[float, float] | None = None,
+    ) -> None:
+        """Add an estimate given as value ± half width of its 95 % interval, what that is made of, and the torques that
+        it is `over` where it is not over all."""
+        self.estimates.append(Estimate(name, label, value, unit, (value - half, value + half), how, parts, over=over))
 
     def exact(self, name: str, label: str, value: float, unit: str, how: str) -> None:
         """Add a figure without an interval: a count is exact, anything else has none that this run could show."""

@@ -44,6 +44,7 @@ class Estimate:
     how: str  # one sentence: from what, over how many, by which estimator
     parts: tuple[Part, ...] = ()  # of the interval, where they are known one by one
     counts: bool = True  # False: of a rejected run, shown and not to be used
+    over: tuple[float, float] | None = None  # N·m, of a part of the torques alone: from and to
 
 
 @dataclass(frozen=True)

@@ -26,9 +26,9 @@ def add_loop(found: Findings, s: Stiffness) -> str:
     )
     found.figure("hysteresis_loss", "Hysteresis loss (gap at zero torque)", width, "arcmin", half, how)
     how = f"∮ τ dw over {s.loops} closed loops at the first rate." if s.loops else "∮ τ dw of the fitted loop."
-    label = "Energy lost per cycle"
+    label, over = "Energy lost per cycle", (-s.tau_ref, s.tau_ref)
     joules = float(np.hypot(s.energy.half, relative * s.energy.value))
-    found.figure("hysteresis_energy", label, s.energy.value * 1e3, "mJ", joules * 1e3, how)
+    found.figure("hysteresis_energy", label, s.energy.value * 1e3, "mJ", joules * 1e3, how, over=over)
     _add_rates(found, s)
     if abs(width) <= half:
         return f", hysteresis loss not told from none (below {abs(width) + half:.2g} arcmin)"

@@ -55,11 +55,13 @@ def add_lines(found: Findings, s: Stiffness) -> None:
     half = half_width(values, random, np.array([*s.tilt.zones, 0.0, 0.0]))
     T = curve.law.numbers(curve.p, curve.scale)
     zones = (f"0 to {T['T1']:.3g} N·m", f"{T['T1']:.3g} to {T['T2']:.3g} N·m", f"above {T['T2']:.3g} N·m")
+    ends = (0.0, T["T1"], T["T2"], s.tau_ref)
     for i, zone in enumerate(zones):
         how = f"Continuous straight lines by least squares, odd, both branches, {zone} either way. {s.spring.knots}"
         name = f"stiffness_K{i + 1}"
         value, parts = float(values[i]), parts_of(float(values[i]), float(random[i]), s.tilt.zones[i])
-        found.figure(name, f"Stiffness K{i + 1}, {zone}", value, "N·m/rad", float(half[i]), how, *parts)
+        over = (ends[i], ends[i + 1])
+        found.figure(name, f"Stiffness K{i + 1}, {zone}", value, "N·m/rad", float(half[i]), how, *parts, over=over)
     if s.spring.fitted_knots:
         how = "Where the lines meet, fitted with them."
         for i, name in ((3, "T1"), (4, "T2")):

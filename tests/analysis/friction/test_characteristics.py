@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -41,6 +43,32 @@ def test_several_runs_share_their_sensors_and_add_how_they_scatter() -> None:
     assert alike.half == pytest.approx(70.0), "four runs with one sensor know its gain no better than one"
     assert apart.value == pytest.approx(7150.0)
     assert apart.half == pytest.approx(np.hypot(70.0, 3.182 * np.std(100 * np.arange(4), ddof=1) / 2))
+
+
+def test_a_run_that_knows_next_to_nothing_beside_another_is_left_out() -> None:
+    K1 = characteristics([
+        ("with a slow run", result(figure("stiffness_K1", 7200.0, 18.0, "N·m/rad"))),
+        ("without", result(figure("stiffness_K1", 6500.0, 1400.0, "N·m/rad"))),
+    ])["K1"]  # fmt: skip
+    assert (K1.value, K1.half) == pytest.approx((7200.0, 18.0))
+    assert K1.runs == ("with a slow run",)
+
+
+def test_figures_over_other_torques_are_not_averaged() -> None:
+    near, next_to_it, far = (
+        replace(figure("stiffness_K1", K, half, "N·m/rad"), over=(0.0, T))
+        for K, half, T in ((7000.0, 18.0, 30.0), (7020.0, 18.0, 31.0), (5000.0, 20.0, 10.0))
+    )
+    K1 = characteristics([("lock_60_1", result(near)), ("lock_60_2", result(next_to_it)), ("lock_20", result(far))])[
+        "K1"
+    ]
+    assert K1.value == pytest.approx(7010.0)
+    assert K1.runs == ("lock_60_1", "lock_60_2")
+
+
+def test_a_figure_without_an_interval_is_listed_without_one() -> None:
+    made = replace(figure("lost_motion", 6.8, 0.0, "arcmin"), ci95=(float("nan"), float("nan")))
+    assert characteristics([("lock", result(made))])["lost_motion"].value == pytest.approx(np.radians(6.8 / 60))
 
 
 def test_nothing_measured_is_nothing_listed() -> None:
