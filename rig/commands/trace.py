@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
         tell(found, unfinished(args.campaign))
         load(PAGE)  # only now: a trace needs all the memory there is, and a page has much to import
         from rig.report.trace.campaign import provenance
-        from rig.report.trace.page import put, render
+        from rig.report.trace.page import SWEEP, put, render
 
         # it takes seconds, and a word to stop meanwhile leaves all as it was; from then on the files are of one trace
         text = render(found, provenance(args.campaign, software(), utc_now()))
@@ -77,6 +77,8 @@ def run(args: argparse.Namespace) -> int:
                 with writing(args.json, "--json"):
                     write_trace(args.json, found)
     print(f"written {written}\nreport {page}")
+    if (sweep := target / SWEEP).exists():
+        print(f"report of the sweep {sweep}")
     return int(exit_of(found))
 
 

@@ -35,11 +35,13 @@ class Identification:
     of: int  # runs there were, completed or not
     simulated: bool
     said: tuple[str, ...] = ()  # of runs that were left out, and of what their manifests cannot mean
+    misfit: str = ""  # of θ̃ at speed, where it is not as predicted
 
     @property
     def exit(self) -> Exit:
-        """INCOMPLETE where a parameter is left open, or two sensors contradict each other."""
-        return Exit.INCOMPLETE if self.found.undetermined or self.found.doubtful else Exit.PASS
+        """INCOMPLETE where a parameter is left open, two sensors contradict each other, or the model does not fit."""
+        doubtful = self.found.undetermined or self.found.doubtful or self.misfit
+        return Exit.INCOMPLETE if doubtful else Exit.PASS
 
     def lines(self) -> list[str]:
         """All of it for people."""
@@ -53,6 +55,7 @@ class Identification:
         return [
             *lines,
             *text.comparison(self.predictions),
+            *([f"  {self.misfit}"] if self.misfit else []),
             *text.coasting(self.coasts),
             *text.characteristic_lines(self.file.characteristics),
             *text.breakaway_beside(self.file),
@@ -63,22 +66,30 @@ class Identification:
 def identify(folders: Sequence[Path], terms: int, say: Say) -> Identification:
     """The gear of the runs in `folders`, its θ̃_p with `terms` orders. Raises UsageError: two gears; DataError: no run,
     or nothing that can be determined."""
-    from rig.analysis.identify.predictions import predictions
+    from rig.analysis.identify.predictions import misfit, predictions
 
     runs, recordings, said = open_runs(folders, say)
     found, file = _fitted(runs, recordings, terms, say)
+    compared = predictions(recordings, file.gear(), terms)
+    doubt = misfit(compared)
     characteristics = beside(runs, say)
     if not characteristics:
         refuse_nothing(found, recordings)
     return Identification(
         found=found,
-        file=replace(file, characteristics=characteristics, covered=covered(found), cannot=(*said, *file.cannot)),
-        predictions=predictions(recordings, file.gear(), terms),
+        file=replace(
+            file,
+            characteristics=characteristics,
+            covered=covered(found),
+            cannot=(*([doubt] if doubt else []), *said, *file.cannot),
+        ),
+        predictions=compared,
         coasts=coasts(runs, found, say),
         used=len(recordings),
         of=len(folders),
         simulated=file.simulated,
         said=said,
+        misfit=doubt,
     )
 
 

@@ -18,6 +18,7 @@ from rig.model.simulate import NoSteadyState, Waveform, at_speed
 
 FEWEST = 6  # revolutions
 GRID = 512  # points a turn
+MISSED = 1.5  # RMS over half the interval of peak to peak: of gears as modelled at most 1.0, of others 1.3 and more
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,26 @@ class Prediction:
     predicted: float  # NaN where the gear does not turn steadily
     pure: float  # peak to peak of θ̃_p: what speed adds is the rest
     rms: float
+
+    @property
+    def missed(self) -> float:
+        """`rms` over half the interval; 0 where nothing was predicted."""
+        half = 0.5 * (self.interval[1] - self.interval[0])
+        return self.rms / half if half > 0 and np.isfinite(self.rms) else 0.0
+
+
+def misfit(made: Sequence[Prediction]) -> str:
+    """What it says of the numbers that θ̃ at speed is not what they make it; "" where it is."""
+    off = [p for p in made if p.missed > MISSED]
+    if not off:
+        return ""
+    worst = max(off, key=lambda p: p.missed)
+    return (
+        f"θ̃ at speed is not what these numbers make it in {len(off)} of {len(made)} runs: between measured and "
+        f"predicted lie {worst.rms:.1f} arcsec RMS in {worst.run} at {worst.speed_rpm:+.0f} rpm, {worst.missed:.1f} "
+        "times half the interval of what was measured. Something acts that the model lacks, and numbers that go by the "
+        "error at speed (J_m, J_l, K, B_sp, θ̃_p) may be off by far more than their intervals; hdrig trace looks for it."
+    )
 
 
 def predictions(runs: Sequence[Recording], gear: Gear, terms: int) -> list[Prediction]:

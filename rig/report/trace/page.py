@@ -29,6 +29,7 @@ from rig.report.words import Origin
 from rig.runfile.manifest import write_atomic
 
 HERE = Path(__file__).parent
+SWEEP = "sweep.html"
 QUIET = 1.15  # RMS over floor before: a channel with less is at its floor and gets no close-up of its own
 
 
@@ -38,9 +39,12 @@ def write(folder: Path, trace: Trace, origin: Provenance) -> Path:
 
 
 def put(folder: Path, text: str) -> Path:
-    """The same of a page that is rendered already."""
-    write_atomic(folder / run_page.NAME, text.encode(errors="replace"))
-    return folder / run_page.NAME
+    """The same of a page that is rendered already. That of a sweep, which no verb makes again, is kept as SWEEP."""
+    page = folder / run_page.NAME
+    if page.exists() and (folder / "result.json").exists() and not (folder / SWEEP).exists():
+        page.replace(folder / SWEEP)
+    write_atomic(page, text.encode(errors="replace"))
+    return page
 
 
 def render(trace: Trace, source: Provenance) -> str:

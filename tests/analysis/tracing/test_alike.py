@@ -50,6 +50,10 @@ def test_lock_tests_that_slip_at_other_instants_are_repeats() -> None:
     assert all(alike(first, lock_test(0.07, 50.0, seed)) for seed in range(2, 12))
 
 
+def test_lock_tests_whose_motor_sticks_a_little_sooner_are_repeats() -> None:
+    assert alike(lock_test(0.14, 60.0, 1), lock_test(0.126, 54.0, 2))
+
+
 def test_lock_tests_at_another_rate_or_to_another_torque_are_none() -> None:
     first = lock_test(0.07, 50.0, 1)
     assert not alike(first, lock_test(0.07, 100.0, 2))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rig.analysis.motion.smallest_step import smallest_step
-from rig.analysis.tracing.runs.resolution import COARSE, SLOWEST, noise_of, quiet, rough
+from rig.analysis.tracing.runs.resolution import COARSE, SLOWEST, counts_of, noise_of, quiet, rough
 from rig.analysis.tracing.thresholds import BANDWIDTH
 
 COUNTS = 2000
@@ -24,6 +24,21 @@ def test_one_count_is_seen_at_any_speed(speed: float) -> None:
 
 def test_a_reading_that_stands_still_has_no_step() -> None:
     assert smallest_step(np.full(100, 3.0)) == 0.0
+
+
+@pytest.mark.parametrize("counts", [2000, 65_536, 1_296_000])
+def test_counts_nobody_declared_are_those_the_angle_is_whole_steps_of(counts: int) -> None:
+    theta = read(1.0, 2 * np.pi / counts)
+    assert counts_of(theta, 0.0) == pytest.approx(counts, rel=1e-6)
+    assert counts_of(theta, 4096.0) == 4096.0
+    assert counts_of(np.where(np.arange(theta.size) == 7, np.nan, theta), 0.0) in (0.0, pytest.approx(counts, rel=1e-6))
+
+
+def test_an_angle_that_is_no_whole_steps_tells_no_counts() -> None:
+    noisy = read(1.0) + 1e-3 * COUNT * np.random.default_rng(1).standard_normal(5000)
+    assert counts_of(noisy, 0.0) == 0.0
+    assert counts_of(np.full(100, 3.0), 0.0) == 0.0
+    assert counts_of(None, 0.0) == 0.0
 
 
 @pytest.mark.parametrize("speed", [0.5, 45.0])

@@ -39,6 +39,16 @@ def test_what_differs_between_the_ways_is_even_in_them(law: Effect) -> None:
         assert np.ptp(forth) > 0
 
 
+def test_two_torque_constants_differ_by_a_tenth_at_most() -> None:
+    """A friction that grows with the load, under weights that pull one way alone, wanted 0.42 of it."""
+
+    def fit(share: float) -> Fit:
+        return Fit(np.array([share]), (), np.eye(1), KNOWN, 50.0)
+
+    assert all(TwoConstants().plausible(fit(share)) for share in (0.04, -0.04))
+    assert not any(TwoConstants().plausible(fit(share)) for share in (0.21, -0.21))
+
+
 def test_two_gains_are_one_gain_for_torque_of_one_sign() -> None:
     s = replace(motion(), torque=np.abs(motion().torque) + 1.0)
     alike, more = TwoGains().columns(s, ())[Port.READS_TAU_L].T

@@ -337,6 +337,20 @@ def test_runs_in_folders_of_their_day_are_found_as_the_trace_finds_them(tmp_path
     assert provenance(tmp_path, {}, "").manifests == {"0718-log": {"backend": "imported"}}
 
 
+def test_the_page_of_a_sweep_is_kept_beside_that_of_its_trace(tmp_path: Path) -> None:
+    (tmp_path / page.run_page.NAME).write_text("of the sweep")
+    (tmp_path / "result.json").write_text("{}")
+    for text in ("of its trace", "of its trace, anew"):
+        assert page.put(tmp_path, text).read_text() == text
+        assert (tmp_path / page.SWEEP).read_text() == "of the sweep"
+
+
+def test_the_page_of_an_older_trace_is_not_kept(tmp_path: Path) -> None:
+    for text in ("first", "second"):
+        page.put(tmp_path, text)
+    assert [path.name for path in tmp_path.iterdir()] == [page.run_page.NAME]
+
+
 @pytest.mark.long
 def test_a_full_page_needs_nobody_else_and_is_the_same_twice(tmp_path: Path) -> None:
     written = page.write(tmp_path, made_up.explained(), made_up.source())

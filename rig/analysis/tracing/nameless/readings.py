@@ -286,6 +286,7 @@ class TwoConstants(Nameless):
     in_short: ClassVar[str] = "the motor has two torque constants"
     source: ClassVar[str] = "krause2013"
     of_reading: ClassVar[str] = "tau_m"
+    MOST: Final = 0.1  # relative
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
         """One, where there is torque of both signs, and something else tells it."""
@@ -298,6 +299,11 @@ class TwoConstants(Nameless):
     def amount(self, fit: Fit) -> Amount:
         """Relative."""
         return sum_of(fit, "for positive torque the reading is larger by", 200, "%")
+
+    def plausible(self, fit: Fit) -> bool:
+        """A tenth at most between both: a drive's sensors of current agree to a few hundredths. More is friction, under
+        weights that pull one way alone."""
+        return bool(2.0 * abs(fit.coefficients[0]) < self.MOST)
 
 
 def _is_told(reach: Reach) -> bool:

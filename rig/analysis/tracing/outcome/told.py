@@ -14,15 +14,20 @@ PARAMETERS: Final = {  # symbol, what it is
     "K_under_load": ("K_L", "torsional stiffness at the largest torque there was"),
     "B_sp": ("B_sp", "damping of the flexspline"),
     "J_m": ("J_m", "inertia, motor side"),
-    "B_m": ("B_m", "viscous friction, motor side and mesh: B_m + B_ml·(1 + σ/N), which no run tells apart"),
+    "B_m": (
+        "B_m",
+        "viscous friction, motor side and mesh, which no run tells apart: B_m + B_ml·(1 + σ/N) where the torque sensor "
+        "reads the spring alone, B_m + B_ml·(1 + σ/N)² where it reads the mesh as well",
+    ),
     "B_ml": ("B_ml", "viscous friction of the mesh"),
     "tau_c": ("τ_c", "constant friction, motor side"),
     "tau_0": ("τ_0", "zero of the motor torque"),
     "J_l": ("J_l", "inertia, load side"),
     "B_l": (
         "B_l",
-        "viscous friction, load side, and what the mesh does to it: B_l + σ·(N + σ)·B_ml, σ = −1 where the mesh takes "
-        "the difference of both speeds, 1 where it takes their sum",
+        "viscous friction, load side, and what the mesh does to it: B_l + σ·(N + σ)·B_ml where the torque sensor reads "
+        "the spring alone, B_l where it reads the mesh as well; σ = −1 where the mesh takes the difference of both "
+        "speeds, 1 where it takes their sum",
     ),
     "tau_cl": ("τ_cl", "constant friction, load side"),
     "tau_l0": ("z", "zero of the torque sensor"),

@@ -11,6 +11,7 @@ from rig.model.effect import Array
 
 CLOSE = 0.05  # relative: travel and speed of repeats agree so well
 SLIPS = 0.2  # the same of the speed of a locked run: a motor that sticks and slips goes back and forth now and then
+STOPS = 0.15  # the same of how far it was wound up: a motor that sticks stops short, by friction once more or less
 SAME_ANGLE = 0.1  # rad, of a motor that is locked: a spring is another one at another angle
 READINGS = 100  # of the angle of a locked run: a few for every stroke
 SAME_LOAD = 1.0  # N·m, how far the means of repeats lie apart: zeros of a sensor, friction that scatters
@@ -51,7 +52,7 @@ def as_fast(a: Recording, b: Recording) -> bool:
         return False
     if a.input_locked is not b.input_locked or (a.input_locked and abs(_held_at(a) - _held_at(b)) > SAME_ANGLE):
         return False
-    close = (CLOSE, SLIPS) if a.locked else (CLOSE, CLOSE)
+    close = (STOPS, SLIPS) if a.locked else (CLOSE, CLOSE)
     ways = zip(travel(a), travel(b), close, strict=True)
     return all(abs(u - v) <= least * max(abs(u), abs(v), 1e-9) for u, v, least in ways)
 

@@ -20,7 +20,7 @@ from rig.analysis.tracing.runs.late import earlier
 from rig.analysis.tracing.runs.look import FIRST, Look
 from rig.analysis.tracing.runs.meanings import computed_torque
 from rig.analysis.tracing.runs.recording import Recording
-from rig.analysis.tracing.runs.resolution import noise_of, quiet
+from rig.analysis.tracing.runs.resolution import counts_of, noise_of, quiet
 from rig.analysis.tracing.runs.sliding import direction
 from rig.analysis.tracing.runs.smoothing import Smoother, thin
 from rig.analysis.tracing.runs.stand_ins import substituted
@@ -60,8 +60,8 @@ def record(whole_run: Run, start: float, hz: float | None = None, look: Look = F
         pieces=made,
         smoother=smoother,
         has=read.has,
-        counts_m=float(encoders.get("motor_counts_per_rev") or 0.0),
-        counts_l=float(encoders.get("load_counts_per_rev") or 0.0),
+        counts_m=counts_of(theta_m, float(encoders.get("motor_counts_per_rev") or 0.0)),
+        counts_l=counts_of(theta_l, float(encoders.get("load_counts_per_rev") or 0.0)),
         rate=1 / read.dt,
         thinned=factor,
         noise=_noise(replace(read, columns=columns), encoders, factor),

@@ -20,6 +20,12 @@ COARSE = 2 * np.pi / 6000  # rad, a count of the motor encoder; 8192 a turn do n
 FINE = 2 * np.pi / 10_000  # rad, a count that needs no lower low-pass; of 2000 J_m is 17 % off at 12 Hz, right at 7
 
 
+FINEST = 2 * np.pi / 2**26  # rad, a count of an encoder: less is what rounding leaves of a number
+
+
+WHOLE = 0.02  # of a step, how far an angle may be from whole ones
+
+
 SLOWEST = 3.0  # Hz, the lowest low-pass: with it a piece of 3 s is still ten times as long as the filter
 
 
@@ -38,6 +44,15 @@ def noise_of(name: str, x: Array, encoders: Mapping[str, float], t: Array | None
     if name == "theta_m" and counts > 0:
         return float(min(max(rough(x, t), _count(x, encoders) / 12**0.5), 2 * np.pi / counts / 12**0.5))
     return rough(x, t)
+
+
+def counts_of(x: Array | None, declared: float) -> float:
+    """Counts per turn of an encoder: as declared, or where nothing is, as the angle (n,) in rad shows that is whole
+    steps from its first row; 0 where it is none."""
+    if declared > 0 or x is None or (step := smallest_step(x)) <= 0:
+        return declared
+    steps = (x[np.isfinite(x)] - x[np.isfinite(x)][0]) / step
+    return 2 * np.pi / step if step > FINEST and np.all(np.abs(steps - np.round(steps)) < WHOLE) else 0.0
 
 
 def _count(theta_m: Array, encoders: Mapping[str, float]) -> float:

@@ -11,7 +11,6 @@ from rig.analysis.tracing.answer import Status, Verdict
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.bent_sensor import SPRINGS, is_the_sensors
 from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
@@ -74,7 +73,7 @@ def _decided(asked: Asked) -> Conclusion:
         beside = asked.sized  # of what may as well be nothing no name stands beside something else
         elsewhere = inside or _drifting(p, s, beside, asked.floors) or _uneven(p, s, beside, asked.floors)
         elsewhere = elsewhere or (None if names else _weakening(p, s))
-        return elsewhere or _jumped(p, beside) or _settled(p, names, asked.found, *_falls(p, asked.before, asked.after))
+        return elsewhere or _jumped(p, beside) or _settled(asked, names, *_falls(p, asked.before, asked.after))
     if not names and asked.worst[1] < LITTLE and (drift := _drifting(p, s, names, asked.floors)):
         return drift  # of many floors, which no error shows: the little that is left is what of it falls within runs
     if drag_one_way := _loads_drag(asked):
@@ -96,7 +95,7 @@ def _by_a_law(asked: Asked) -> Conclusion | None:
     if not larger:
         return confounded(laws[0], stand)
     named = tuple(name for name in names if name in stand or name in larger)
-    return beside_little(laws[0], _settled(p, named, asked.found, *_falls(p, asked.before, asked.after)))
+    return beside_little(laws[0], _settled(asked, named, *_falls(p, asked.before, asked.after)))
 
 
 def _with_a_remainder(asked: Asked, where: Sequence[Home]) -> Conclusion | None:
@@ -108,7 +107,7 @@ def _with_a_remainder(asked: Asked, where: Sequence[Home]) -> Conclusion | None:
     sure = asked.has_repeats or all_plain
     if asked.p.own.line is not None or not (asked.names and sure and mostly):
         return None
-    conclusion = _settled(asked.p, asked.names, asked.found, first, total)
+    conclusion = _settled(asked, asked.names, first, total)
     return Conclusion(conclusion.verdict, where[0], _lives(where), conclusion.next_run)
 
 
@@ -123,7 +122,7 @@ def _unknown(asked: Asked, where: Sequence[Home]) -> Conclusion:
     p, before, after = asked.p, asked.before, asked.after
     line, best, (_, total) = p.own.line, where[0], asked.worst
     if line is None and not asked.names and is_next_to_nothing(best, total):
-        return _settled(p, (), asked.found, *asked.worst)
+        return _settled(asked, (), *asked.worst)
     # steps and phases that runs have to themselves take on whatever there is; a line in a sensor is in the columns made
     # from it too
     other = _of_the_same_order(asked.s, best) | _along_the_same_turn(best)
@@ -240,18 +239,21 @@ def _lives(where: Sequence[Home]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(h.coordinate for h in where if h.share > 0.3))[:3]
 
 
-def _settled(p: Prepared, names: tuple[str, ...], found: Found, before: float, after: float) -> Conclusion:
-    """Nothing loud remains."""
+def _settled(asked: Asked, names: tuple[str, ...], before: float, after: float) -> Conclusion:
+    """Nothing loud remains; `before` and `after` are what the worst channel has left, in floors."""
+    p = asked.p
     if not names:
         sentence = nothing([c for c in WHOLE if any(key[1] == c for key in p.held_out.floors)], after)
         return Conclusion(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
-    rivals, next_run = deciding(p, names, found)
+    rivals, next_run = deciding(p, names, asked.found)
     if twins := inseparable(names, read_by_any(p.eq.runs)):
         rivals, next_run = (
             (*rivals, *(twin for twin in twins if twin not in rivals)),
             next_run or by_table({*names, *twins}),
         )
     sentence = lacks(names, before, after)
+    if after > QUIETER * before:  # another one than they act on is the worst
+        sentence = lacks(names, *most(p.held_out, asked.before, asked.after), "most improved")
     if all(name in p.own.made and not p.own.made[name].keys() & p.held_out.floors.keys() for name in names):
         sentence = f"The model lacks {in_words(names)}: fitted runs show it, held-out ones have none of it."
     elif p.eq.runs[0].look.zeros and after > QUIETER * before:
