@@ -22,15 +22,15 @@ def hold_time(omega: float, seconds: float) -> float:
     return math.ceil(seconds / turn) * turn
 
 
-def hold_speed(setting: Setting, omega: float, seconds: float) -> Generator[Torque, Sample, float]:
-    """Up to `omega` rad/s under the position loop and on for whole turns of at least `seconds`.
+def hold_speed(setting: Setting, omega: float, seconds: float, beyond: float = 0.0) -> Generator[Torque, Sample, float]:
+    """Up to `omega` rad/s under the position loop and on for whole turns of at least `seconds`, and `beyond` rad.
 
     Returns the mean torque [N·m] that held the speed over those turns: nothing accelerates on average.
     """
     pid, ramp = Pid(setting.control, setting.period), Ramp(0.0, omega, ACCELERATION)
     sample = yield Torque(0.0)
     home, begin = sample.theta_m, sample.t
-    first, last = ramp.duration + EASE, ramp.duration + EASE + hold_time(omega, seconds)
+    first, last = ramp.duration + EASE, ramp.duration + EASE + hold_time(omega, seconds) + beyond / abs(omega)
     total, ticks = 0.0, 0
     while (t := sample.t - begin) < last:
         offset, omega_ref = ramp.at(t)

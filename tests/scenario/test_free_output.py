@@ -144,7 +144,20 @@ def test_a_coast_down_gives_the_inertia_and_friction_of_the_plant() -> None:
         e = figure(result, name)
         assert e.ci95[0] <= true <= e.ci95[1], name
         assert e.value == pytest.approx(true, rel=0.04), name
-    assert figure(result, "time_constant").value == pytest.approx(inertia / viscous, rel=0.04)
+    constant = figure(result, "time_constant")
+    assert constant.value == pytest.approx(inertia / viscous, rel=0.015)
+    assert constant.ci95[0] <= inertia / viscous <= constant.ci95[1]
+
+
+@pytest.mark.slow
+def test_coasts_of_each_way_begin_evenly_over_half_a_turn() -> None:
+    columns = Rig().run(CoastDown(repeats=4)).run.columns
+    speed, asked, theta = columns["omega_m"], columns["tau_ask"], columns["theta_m"]
+    begin = np.flatnonzero((asked[1:] == 0.0) & (asked[:-1] != 0.0) & (np.abs(speed[1:]) > 40.0)) + 1
+    assert begin.size == 8
+    for way in (begin[::2], begin[1::2]):
+        apart = np.sort(np.degrees(theta[way]) % 180.0)
+        np.testing.assert_allclose(np.diff([*apart, apart[0] + 180.0]), 45.0, atol=8.0)
 
 
 @pytest.mark.slow

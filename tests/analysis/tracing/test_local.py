@@ -186,11 +186,30 @@ def test_the_jump_of_a_run_is_in_its_other_parts_too(rng: np.random.Generator, m
     left = {(0, "A"): e[seen], (1, "A"): e[~seen], (2, "A"): e[~seen]}
     found = steps._in_other_parts(eq, left, {0: (at,)}, {0: (lost,)})
     assert list(found) == [1]  # the third is another run's
-    row, size = found[1]
+    ((row, size),) = found[1]
     assert times[1][row] == pytest.approx(t[500], abs=0.1)
     assert size == pytest.approx(lost, rel=0.2)
+    assert not steps._in_other_parts(eq, left, {0: (at,), 1: (row,)}, {0: (lost,), 1: (size,)}), "it is known there"
     left[1, "A"] = left[1, "A"] - np.where(times[1] > t[500], lost, 0.0)  # what came back is not lost
     assert not steps._in_other_parts(eq, left, {0: (at,)}, {0: (lost,)})
+
+
+def test_a_part_in_which_one_jump_was_found_has_the_others_of_its_run_too(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    t = 0.008 * np.arange(1800)
+    seen = np.arange(1800) // 150 % 2 == 0
+    e = 4e-6 * rng.standard_normal(1800) + 25e-6 * (t > t[500]) + 15e-6 * (t > t[1400])
+    times = {0: t[seen], 1: t[~seen]}
+    monkeypatch.setattr(steps, "clock", lambda eq, key: times[key[0]])
+    eq: Any = SimpleNamespace(runs=[SimpleNamespace(name=name) for name in ("slow", f"slow ({HELD_PART})")])
+    here = tuple(int(np.searchsorted(times[0], t[row])) for row in (500, 1400))
+    there = int(np.searchsorted(times[1], t[500]))
+    left = {(0, "A"): e[seen], (1, "A"): e[~seen]}
+    found = steps._in_other_parts(eq, left, {0: here, 1: (there,)}, {0: (25e-6, 15e-6), 1: (25e-6,)})
+    ((row, size),) = found[1]
+    assert times[1][row] == pytest.approx(t[1400], abs=0.1)
+    assert size == pytest.approx(15e-6, rel=0.2)
 
 
 def test_a_line_stands_out_of_its_surroundings_at_its_frequency(rng: np.random.Generator) -> None:

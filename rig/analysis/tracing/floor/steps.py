@@ -89,8 +89,9 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     if of_the_torque > sum(map(len, told.values())):
         rows = told  # a lock test has no balance of the load to tell by: there they are what they are in the others
         sizes = {run: sizes[run] for run in rows}
-    for run, (row, size) in _in_other_parts(eq, e, rows, sizes).items():
-        rows[run], sizes[run] = (row,), (size,)
+    for run, more in _in_other_parts(eq, e, rows, sizes).items():
+        found = sorted([*zip(rows.get(run, ()), sizes.get(run, ()), strict=True), *more])
+        rows[run], sizes[run] = tuple(at for at, _ in found), tuple(size for _, size in found)
     placed = {run: [_placed(eq, e, run, row) for row in at] for run, at in rows.items()}
     rows = {run: tuple(row for row, _ in found) for run, found in placed.items()}
     high = {run: heights(e[run, "A"], at) for run, at in rows.items()}
@@ -116,20 +117,27 @@ def _certain(e: Array, going: Mask) -> Mask:
 
 def _in_other_parts(
     eq: Equations, e: Mapping[Key, Array], rows: Mapping[int, Sequence[int]], sizes: Mapping[int, Sequence[float]]
-) -> dict[int, tuple[int, float]]:
-    """The jump of a run in those of its parts in which none was found: in a few seconds of noise it does not stand out
-    by itself, but when it was is known, and how large."""
-    out: dict[int, tuple[int, float]] = {}
+) -> dict[int, list[tuple[int, float]]]:
+    """The jumps of a run in those of its parts in which they were not found: in a few seconds of noise one does not
+    stand out by itself, but when it was is known, and how large."""
+    out: dict[int, list[tuple[int, float]]] = {}
     for run, at in rows.items():
         t, whole = clock(eq, (run, "A")), whole_run(eq.runs[run].name)
-        others = [i for i, c in e if c == "A" and i not in rows and whole_run(eq.runs[i].name) == whole]
-        for row, size in zip(at, sizes[run], strict=True):
+        others = [i for i, c in e if c == "A" and i != run and whole_run(eq.runs[i].name) == whole]
+        for (row, size), other in itertools.product(zip(at, sizes[run], strict=True), others):
             when = t[max(row - EDGE, 0)], t[min(row + EDGE, t.size - 1)]
-            for other in others:
-                first, last = np.searchsorted(clock(eq, (other, "A")), when)
-                if found := one_of_size(e[other, "A"], range(first, last + 1), size):
-                    out[other] = found
+            first, last = np.searchsorted(clock(eq, (other, "A")), when)
+            known = [*zip(rows.get(other, ()), sizes.get(other, ()), strict=True), *out.get(other, ())]
+            if any(first - EDGE <= there <= last + EDGE for there, _ in known):
+                continue
+            if found := one_of_size(_without(e[other, "A"], known), range(first, last + 1), size):
+                out.setdefault(other, []).append(found)
     return out
+
+
+def _without(e: Array, known: Sequence[tuple[int, float]]) -> Array:
+    """What is left of a run (n,) without jumps of it that are known by now."""
+    return e - sum((size * (np.arange(e.size) >= row) for row, size in known), np.zeros(e.size))
 
 
 def _lasts(eq: Equations, e: Mapping[Key, Array], key: Key, found: Sequence[tuple[int, float]]) -> bool:

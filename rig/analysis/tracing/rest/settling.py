@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Final
@@ -17,6 +18,7 @@ from rig.model.effect import Array
 
 CONSTANTS: Final = (0.6, 1.5, 4.0, 8.0, 16.0, 40.0)  # s
 MOMENTS: Final = np.arange(1.0, 20.0)  # s since the start: runs of constant speed are 10 to 20 s long
+POWERS: Final = (2, 4)  # of the speed, with which a drag grows: of churned oil, and of what the speed itself lets loose
 MOST: Final = 0.6  # of the excess: one number that foretells so much of it is no chance
 
 
@@ -41,10 +43,17 @@ def _laws(channel: str) -> Iterator[Law]:
             yield partial(_falls, tau, sense), f"with a time constant near {tau:.2g} s"
         for moment in MOMENTS.tolist() if channel in "ML" else ():
             yield partial(_is_there, moment, sense), f"from about {moment:.2g} s on"
+    for power, tau in itertools.product(POWERS if channel in "ML" else (), CONSTANTS):
+        yield partial(_sets_in, tau, power), f"as a drag that sets in with a time constant near {tau:.2g} s"
 
 
 def _falls(tau: float, sense: Callable[[Rest], Array], r: Rest) -> Array:
     return np.asarray(np.exp(-_since_it_began(r) / tau) * sense(r))
+
+
+def _sets_in(tau: float, power: int, r: Rest) -> Array:
+    speed = r.at["speed"] / max(float(np.abs(r.at["speed"]).max()), 1e-9)
+    return np.asarray(-np.expm1(-_since_it_began(r) / tau) * np.abs(speed) ** power * np.sign(speed))
 
 
 def _is_there(moment: float, sense: Callable[[Rest], Array], r: Rest) -> Array:
