@@ -93,8 +93,7 @@ def _lines(found: Findings, f: MotorFriction, prefix: str, where: str, of: str) 
     how = f"Means of {of} over whole turns of {len(f.rows)} plateaus: line against speed, both directions."
     found.figure(f"{prefix}coulomb", f"Coulomb friction, {where}", s.coefficients[1], "N·m", s.half(1), how)
     found.figure(f"{prefix}viscous", f"Viscous drag, {where}", s.coefficients[0], "N·m·s/rad", s.half(0), how)
-    if f.doubt:
-        found.cannot.append(f.doubt)
+    found.cannot += [words for words in (f.doubt, f.bend) if words]
     if f.fall is not None:
         fell = f"{how} Falling part fall·exp(−(ω/ω_s)²) with the speed that fits best."
         label = f"Friction above Coulomb at standstill, {where}"

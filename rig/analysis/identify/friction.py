@@ -7,14 +7,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rig.analysis.findings.collected import pm
 from rig.analysis.findings.result import Array
 from rig.analysis.identify.means import Mean, variances
 from rig.analysis.identify.solve import Solved, random_effects
+from rig.core.units import RPM
 
 STRIBECK = np.geomspace(0.1, 30.0, 40)  # rad/s tried for ω_s
 CLEAR = 12.0  # of χ²: a Stribeck term must explain this much to be believed, two parameters at odds of 400
 SLOW = 5.0  # rad/s, 48 rpm: a fall of friction is looked for below, straight drag above
 CONTRADICTS = 4.0  # standard errors by which slow plateaus must miss the line of the fast ones
+BENDS = 2.0  # halves of its 95 % interval that a part with the square of the speed must have
+SPEEDS = 4  # different ones, below which a line with a bend is one through every point
+APART = 1.1  # times: speeds further apart are different ones
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,7 @@ class MotorFriction:
     both_ways: bool
     rows: tuple[Mean, ...]
     doubt: str = ""  # what the slow plateaus say against the line, "" when nothing
+    bend: str = ""  # what all of them say against its being straight, "" when nothing
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,26 @@ def motor_friction(means: Sequence[Mean]) -> MotorFriction | None:
                 f"Below {SLOW * 9.55:.0f} rpm the motor's friction is {slow:+.4f} N·m off the line of the faster runs "
                 f"(1 σ {u:.4f} N·m): tau_c and the drag are those above; how it gets there takes three slow speeds."
             )
-    return MotorFriction(straight, 0, 1, offset, None, float("nan"), both, tuple(rows), doubt)
+    bend = _bend(plain[fast], omega[fast], y[fast], v[fast]) if fast.any() else ""
+    return MotorFriction(straight, 0, 1, offset, None, float("nan"), both, tuple(rows), doubt, bend)
+
+
+def _bend(plain: Array, omega: Array, y: Array, v: Array) -> str:
+    """A sentence where a part of the friction grows with the square of the speed, or falls; "" where the line does."""
+    speeds = np.sort(np.abs(omega))
+    if 1 + np.count_nonzero(speeds[1:] > APART * speeds[:-1]) < SPEEDS:
+        return ""
+    bent = random_effects(np.column_stack([plain, omega * np.abs(omega)]), y, v)
+    square, half, top = float(bent.coefficients[-1]), bent.half(-1), float(speeds[-1])
+    if abs(square) < BENDS * half:
+        return ""
+    drag, coulomb = (pm(float(bent.coefficients[i]), bent.half(i), unit) for i, unit in ((0, "N·m·s/rad"), (1, "N·m")))
+    return (
+        f"Friction is no straight line over the speed: a part that goes with its square is "
+        f"{pm(square * top**2, half * top**2, 'N·m')} at {top / RPM:.0f} rpm, and beside it the drag is {drag} and the "
+        f"Coulomb friction {coulomb}. Those of the straight line are off by more than their intervals say; hdrig trace "
+        "names what bends it."
+    )
 
 
 def total_friction(means: Sequence[Mean]) -> MotorFriction | None:

@@ -187,7 +187,8 @@ def _load(found: dict[str, Parameter], cannot: list[str], fits: Fits) -> None:
     if fits.load is not None:
         running = tuple(dict.fromkeys(w.run for w in fits.windows))
         found["J_l"] = _measured(fits.load.coefficients[J_L], fits.load.u(J_L), fits.load, running)
-        found["lag"] = _measured(fits.load.coefficients[LAG], fits.load.u(LAG), fits.load, running)
+        lag = fits.load.coefficients[LAG] - fits.taken_off  # behind load angles as recorded: the fit had them in step
+        found["lag"] = _measured(lag, fits.load.u(LAG), fits.load, running)
     else:
         cannot.append(f"J_l: it takes {NEEDS['J_l']}.")
     friction = fits.load_friction
@@ -215,7 +216,8 @@ def _motor(found: dict[str, Parameter], cannot: list[str], fits: Fits, said: Map
     if share >= total:
         B_ml, share = 0.0, 0.0
     found["B_ml"] = Parameter(B_ml, origin="declared" if B_ml else "assumed", note="cannot be told from B_m")
-    found["B_m"] = _measured(total - share, u, s, runs, "the measured sum less the share of B_ml")
+    note = "the measured sum less the share of B_ml" if B_ml else "the measured sum, what the mesh drags in it"
+    found["B_m"] = _measured(total - share, u, s, runs, note)
     found["tau_c"] = _measured(s.coefficients[friction.tau_c], s.u(friction.tau_c), s, runs)
     if not friction.both_ways:
         cannot.append("tau_c: only one direction was run, a constant offset of the drive's torque looks the same.")
@@ -229,6 +231,8 @@ def _motor(found: dict[str, Parameter], cannot: list[str], fits: Fits, said: Map
         found["omega_s"] = Parameter(friction.omega_s, runs=runs, note="chosen from a grid, no interval")
     elif friction.doubt:
         cannot.append(friction.doubt)
+    if friction.bend:
+        cannot.append(friction.bend)
     _motor_inertia(found, cannot, fits)
 
 

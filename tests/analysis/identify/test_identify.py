@@ -102,6 +102,8 @@ def test_an_encoder_that_reads_late_is_found_and_does_not_pass_for_damping(
     late = [r.with_load_late_by(-LATE) for r in campaign]
     found = identified(fit(late, 15), {}).parameters
     assert found["skew"].value == pytest.approx(LATE, rel=0.03)
+    in_step = identified(fit(campaign, 15), {}).parameters["lag"].value
+    assert found["lag"].value == pytest.approx(in_step - LATE, abs=found["lag"].half), "behind load angles as recorded"
     assert found["B_sp"].value == pytest.approx(gear.B_sp, rel=0.02)
     assert found["K"].value == pytest.approx(gear.K, rel=0.005)
 
