@@ -156,7 +156,11 @@ def _add_law(found: Findings, law: LoadLaw | None) -> None:
             f"{law.rms:.2g} arcsec."
         )
         return
-    how = "P(T) = P_∞ + (P_0 − P_∞)·exp(−|T|/T_c) by least squares over all runs, profile intervals."
+    how = (
+        "P(T) = P_∞ + (P_0 − P_∞)·exp(−|T|/T_c) by least squares over all runs, profile intervals. |T| is the "
+        "weight's: friction of the load adds to it one way and takes from it the other. It leaves "
+        f"{law.rms:.2g} arcsec RMS."
+    )
     _add(found, "load_law_P_0", "P_0, without load", law.P_0, "arcsec", how)
     _add(found, "load_law_P_inf", "P_∞, under a heavy load", law.P_inf, "arcsec", how)
     _add(found, "load_law_T_c", "T_c, load over which it falls", law.T_c, "N·m", how)

@@ -93,7 +93,7 @@ def say(curves: Curves) -> str:
 DRAWING = Drawing(
     "each-run",
     "Every held-out run, before and after",
-    "RMS error of the model on runs that neither the fit, nor the choice of the effect, nor the floor has seen; "
+    "RMS error of the model on runs that no coefficient and no floor comes from, and that could only take names away; "
     "logarithmic. The bar marks the floor: what two runs of the same condition differ by, divided by √2. An error at "
     "its floor has nothing left to explain. The same numbers stand in the table below.",
     draw,
