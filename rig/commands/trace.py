@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import sys
 import time
@@ -19,6 +20,7 @@ from rig.runfile.writing import writing
 if TYPE_CHECKING:
     from rig.analysis.tracing.answer import NextRun
     from rig.analysis.tracing.outcome.result import Trace
+    from rig.model.effect import Parameter
 
 
 PAGE = "rig.report.trace.page"
@@ -107,6 +109,11 @@ def asked(run: NextRun) -> str:
     return f"{run.procedure.replace('_', '-')}{f' at {at}' if at else ''}: {run.because}"
 
 
+def _is_any_phase(p: Parameter) -> bool:
+    """Of a wave that is not told from none: its amplitude says so, and the phase says nothing."""
+    return p.name.endswith("_phase") and p.ci95[1] - p.ci95[0] > math.pi
+
+
 def tell(found: Trace, first: str = "") -> None:
     """Verdict, parameters, errors before and after, on stdout; what is to be known `first` stands below the head."""
     from rig.analysis.tracing.outcome.without import counted_out
@@ -128,7 +135,7 @@ def tell(found: Trace, first: str = "") -> None:
     if rest := remainder(found):
         print(f"  {rest}")
     for effect in found.effects:
-        for p in effect.parameters:
+        for p in (p for p in effect.parameters if not _is_any_phase(p)):
             what = gloss(effect.effect, p.name, p.unit)
             print(f"  {effect.effect} {p.name} {said(p)}" + (f"  {what}" if what else ""))
     for label, name in (("kinematic error", "theta_l"), ("motor torque", "tau_m"), ("shaft torque", "tau_l")):

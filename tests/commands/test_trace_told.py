@@ -8,6 +8,7 @@ import pytest
 
 from rig.analysis.tracing.outcome.result import Before
 from rig.commands.trace import tell
+from rig.model.effect import parameter
 from tests.report.trace import made_up
 
 
@@ -39,3 +40,17 @@ def test_runs_that_were_left_out_are_counted_and_named(capsys: pytest.CaptureFix
     assert "7 of 8 runs read. Left out: torn." in said
     tell(replace(made_up.nothing(), read=7))
     assert "Left out" not in capsys.readouterr().out
+
+
+def test_a_phase_that_may_be_any_is_not_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    sizes = (
+        parameter("order_2_amplitude", 0.03, 0.001, "N·m"),
+        parameter("order_2_phase", 0.4, 0.05, "rad"),
+        parameter("order_4_amplitude", 1e-5, 1.4e-4, "N·m"),
+        parameter("order_4_phase", 0.0, 11.0, "rad"),
+    )
+    base = made_up.explained()
+    tell(replace(base, effects=(replace(base.effects[0], effect="cogging_torque", parameters=sizes),)))
+    said = capsys.readouterr().out
+    assert all(name in said for name in ("order_2_phase", "order_4_amplitude"))
+    assert "order_4_phase" not in said
