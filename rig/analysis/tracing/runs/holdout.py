@@ -11,7 +11,7 @@ import numpy as np
 
 from rig.analysis.tracing.runs.alike import alike
 from rig.analysis.tracing.runs.recording import Recording
-from rig.analysis.tracing.runs.strokes import strokes
+from rig.analysis.tracing.runs.strokes import strokes, wound_back
 from rig.core.errors import UsageError
 from rig.core.nearest import nearest
 from rig.core.units import TURN
@@ -24,6 +24,7 @@ FORTH_AND_BACK = 2  # strokes
 TURNED_BACK = 0.7  # of a stroke: what is left of it goes with the next, so that both ways are tested
 PAIRS = 8  # of strokes, from which on every third tells of all
 MIXED = 2.0  # highest speed of strokes over the lowest: a motion that is repeated has one
+WOUND = 0.3  # of the range of a locked run's angle, by which it goes back after it was wound up
 STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
 HELD_PART = "part held out"
 TOLD = 8  # names of runs in a sentence
@@ -218,7 +219,8 @@ def _head_and_tail(run: Recording) -> Parts | None:
     before = np.cumsum([0, *(piece.theta_m.size for piece in run.pieces)])
     k = int(np.searchsorted(before, wish, side="right")) - 1
     piece = run.pieces[k]
-    cut = _cut(piece.theta_m, wish - int(before[k]))
+    find = _cut_locked if run.locked else _cut
+    cut = find(piece.theta_m, wish - int(before[k]))
     if cut is None:
         return None
     head, tail = piece.part(slice(0, cut)), piece.part(slice(cut, None))
@@ -230,6 +232,14 @@ def _both_ways(theta: Array, stroke: slice) -> int:
     before, with a turn of the motor or more left of that; where it is shorter, after it."""
     cut = stroke.start + int(TURNED_BACK * (stroke.stop - stroke.start))
     return cut if float(abs(theta[stroke.stop - 1] - theta[cut])) >= TURN else int(stroke.stop)
+
+
+def _cut_locked(theta: Array, wish: int) -> int | None:
+    """The row of an angle (n,) nearest to `wish` at which the gear was wound up most either way; that of `_cut` where
+    it was wound up one way. A motor that sticks goes up a stair, and trembles on its steps; and a spring is not
+    foretold beyond the torques it was fitted at."""
+    edges = np.array(wound_back(theta, WOUND * float(np.ptp(theta))))
+    return int(edges[np.argmin(np.abs(edges - wish))]) if edges.size else _cut(theta, wish)
 
 
 def _cut(theta: Array, wish: int) -> int | None:

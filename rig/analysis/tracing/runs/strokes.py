@@ -19,3 +19,20 @@ def strokes(theta: Array) -> list[slice]:
     step[step == 0] = 1
     cuts = [0, *(int(c) + 1 + wide // 2 for c in np.flatnonzero(np.diff(step))), theta.size]
     return [slice(lo, hi) for lo, hi in itertools.pairwise(cuts) if hi - lo > 25]
+
+
+def wound_back(theta: Array, least: float) -> list[int]:
+    """Rows at which an angle (n,) is largest, or smallest, before it goes back by `least` or more."""
+    out, top, low = [], 0, 0
+    for row, x in enumerate(theta.tolist()):
+        if x > theta[top]:
+            top = row
+        if x < theta[low]:
+            low = row
+        if theta[top] - x >= least and (not out or out[-1] != top) and top > low:
+            out.append(top)
+            low = row
+        elif x - theta[low] >= least and (not out or out[-1] != low) and low > top:
+            out.append(low)
+            top = row
+    return out

@@ -170,8 +170,11 @@ def _in_one_run(p: Prepared, s: Solution) -> Conclusion | None:
         coordinate = "time"
         what = f", which {twins[0].name}, taken alike, has not: something happened in that run"
     else:
-        where = home(p.eq, {k: s.residual(k) for k in s.keys}, p.floors) or [WHERE_IT_TURNS_BACK]
-        coordinate, said = where[0].coordinate, "no run taken alike is without it"
+        where = home(p.eq, {k: s.residual(k) for k in s.keys}, p.floors)
+        if run.locked:  # all that it does comes and goes with its one or two cycles
+            where = [found for found in where if found.coordinate != "time_periodic"]
+        coordinate = (where or [WHERE_IT_TURNS_BACK])[0].coordinate
+        said = "no run taken alike is without it"
         if not _is_repeated(p, run):
             said = "no other run was taken like it, so that none can say whether it comes again"
         what = f", and {said}; it lives in {coordinate.replace('_', ' ')}"
