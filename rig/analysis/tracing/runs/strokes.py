@@ -23,7 +23,8 @@ def strokes(theta: Array) -> list[slice]:
 
 def wound_back(theta: Array, least: float) -> list[int]:
     """Rows at which an angle (n,) is largest, or smallest, before it goes back by `least` or more."""
-    out, top, low = [], 0, 0
+    out: list[int] = []
+    top = low = 0
     for row, x in enumerate(theta.tolist()):
         if x > theta[top]:
             top = row
