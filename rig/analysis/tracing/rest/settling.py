@@ -37,13 +37,14 @@ Law = tuple[Callable[[Rest], Array], str]
 
 
 def _laws(channel: str) -> Iterator[Law]:
-    """Of an angle's zero, or of a torque; of a torque as of friction as well, which turns with the way."""
+    """Of an angle's zero, or of a torque; of a torque as of friction as well, which turns with the way, and of the
+    motor's as a drag: what pulls at the load the further it has turned is none, and would look like one."""
     for sense in SENSES if channel in "ML" else SENSES[:1]:
         for tau in CONSTANTS:
             yield partial(_falls, tau, sense), f"with a time constant near {tau:.2g} s"
         for moment in MOMENTS.tolist() if channel in "ML" else ():
             yield partial(_is_there, moment, sense), f"from about {moment:.2g} s on"
-    for power, tau in itertools.product(POWERS if channel in "ML" else (), CONSTANTS):
+    for power, tau in itertools.product(POWERS if channel == "M" else (), CONSTANTS):
         yield partial(_sets_in, tau, power), f"as a drag that sets in with a time constant near {tau:.2g} s"
 
 
