@@ -24,6 +24,7 @@ FORTH_AND_BACK = 2  # strokes
 TURNED_BACK = 0.7  # of a stroke: what is left of it goes with the next, so that both ways are tested
 PAIRS = 8  # of strokes, from which on every third tells of all
 MIXED = 2.0  # highest speed of strokes over the lowest: a motion that is repeated has one
+STAIR = 3  # strokes for one of a gear that is wound up and down: with more the motor sticks
 WOUND = 0.3  # of the range of a locked run's angle, by which it goes back after it was wound up
 STRETCH = 150  # rows: ten times what filters and friction leave out at its ends
 HELD_PART = "part held out"
@@ -235,11 +236,12 @@ def _both_ways(theta: Array, stroke: slice) -> int:
 
 
 def _cut_locked(theta: Array, wish: int) -> int | None:
-    """The row of an angle (n,) nearest to `wish` at which the gear was wound up most either way; that of `_cut` where
-    it was wound up one way. A motor that sticks goes up a stair, and trembles on its steps; and a spring is not
-    foretold beyond the torques it was fitted at."""
+    """That of `_cut`; of a motor that sticks, goes up a stair and trembles on its steps, the row nearest to `wish` at
+    which the gear was wound up most either way: a spring is not foretold beyond the torques it was fitted at."""
     edges = np.array(wound_back(theta, WOUND * float(np.ptp(theta))))
-    return int(edges[np.argmin(np.abs(edges - wish))]) if edges.size else _cut(theta, wish)
+    if not edges.size or len(strokes(theta)) <= STAIR * (edges.size + 1):
+        return _cut(theta, wish)
+    return int(edges[np.argmin(np.abs(edges - wish))])
 
 
 def _cut(theta: Array, wish: int) -> int | None:
