@@ -108,7 +108,8 @@ def _fitted(runs: list[Run], recordings: list[Recording], terms: int, say: Say) 
     found = identified(fit(recordings, terms, say), runs[0].manifest)
     gear = runs[0].manifest.get("gear") or {}
     simulated = any(r.simulated for r in runs)
-    return found, found.gear_file(str(gear.get("serial") or ""), simulated, made_with(runs))
+    lacking = [name for name in ("tau_m", "tau_l") if all(getattr(r, name) is None for r in recordings)]
+    return found, found.gear_file(str(gear.get("serial") or ""), simulated, made_with(runs), lacking)
 
 
 def refuse_nothing(found: Identified, recordings: list[Recording]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,7 +33,7 @@ STRIBECK = 1.0  # rad/s, written beside it; without a fall it has no effect
 NEEDS = {
     "J_l": "runs at several speeds with torque sensor and load encoder",
     "K": "a lock run, or runs at several speeds, with torque sensor and load encoder",
-    "J_m": "runs at several speeds with the drive's torque",
+    "J_m": "runs at several speeds with the drive's torque, torque sensor and load encoder",
 }
 
 
@@ -78,13 +78,15 @@ class Identified:
     output: str = USUAL  # the part that was the output, by which the sums of drag were read
     doubtful: bool = False  # two sensors contradict each other: one of them, and what goes by it, is wrong
 
-    def gear_file(self, serial: str, simulated: bool, made: str) -> GearFile:
-        """What goes on disk. Raises DataError when inertias or stiffness are neither measured nor declared."""
+    def gear_file(self, serial: str, simulated: bool, made: str, lacking: Sequence[str] = ()) -> GearFile:
+        """What goes on disk. Raises DataError when inertias or stiffness are neither measured nor declared, with the
+        channels that are `lacking` in all runs."""
         missing = [name for name in ("J_m", "J_l", "K") if name not in self.parameters]
         if missing:
+            none_of = f"; no run here has {' or '.join(lacking)}" if lacking else ""
             raise DataError(
                 f"{missing[0]} is neither measured here nor declared in the runs: no gear file; take "
-                f"{NEEDS[missing[0]]}"
+                f"{NEEDS[missing[0]]}{none_of}"
             )
         kept = {name: self.parameters[name] for name in UNITS}
         open_ = [said_open(self.undetermined, kept)] if self.undetermined else []
