@@ -114,7 +114,7 @@ def test_what_no_run_shows_is_declared_or_assumed_and_said(campaign: list[Record
     found = identified(fit(bare, 15), {"declared": {"K": 7160.0, "J_l": 0.3, "J_m": 1e-3}})
     assert found.parameters["K"].origin == "declared"
     assert any(s.startswith("Stiffness K: nothing here shows it") for s in found.cannot)
-    with pytest.raises(DataError, match="neither measured here nor declared.*; no run here has tau_l$"):
+    with pytest.raises(DataError, match=r"neither measured here nor declared.*; no run here has tau_l$"):
         identified(fit(bare, 15), {}).gear_file("", True, "", ["tau_l"])
 
 
