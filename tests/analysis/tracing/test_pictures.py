@@ -136,4 +136,8 @@ def test_the_reason_says_how_much_a_candidate_removes_and_what_would_be_asked_fo
     assert "beside cogging torque it is not needed" in reason(Tried({}, 0.7, "M"), "torque_ripple", ("cogging_torque",))
     assert "removes nothing of the excess" in reason(Tried({}, -0.001, "A"), "quadratic_drag", ())
     assert "worse" in reason(Tried({}, -0.3, "L"), "quadratic_drag", ())
+    lock_tests_alone = Tried({}, 2.1, "A", over=False)
+    assert reason(lock_tests_alone, "hysteretic_stiffness", ("hysteretic_stiffness",)) == (
+        "alone it lowers the held-out kinematic error, which is above its floor in single runs only"
+    )
     assert "not needed" not in reason(Tried({}, 0.99, "M"), "cogging_torque", ("cogging_torque",))

@@ -23,11 +23,13 @@ TAKEN: Final = "; what stands in its place explains more"
 
 @dataclass(frozen=True)
 class Tried:
-    """One candidate alone: held-out RMS by channel, SI, and the share of the excess it removes in `channel`."""
+    """One candidate alone: held-out RMS by channel, SI, and the share of the excess it removes in `channel`, which has
+    some `over` the floor in all, or in single runs."""
 
     rms: dict[str, float]
     share: float
     channel: str
+    over: bool = True
 
 
 def candidates(
@@ -41,16 +43,16 @@ def candidates(
     effects that are `confounded` a law beside the library explains more."""
     out, held = [], unseen(p.baseline, p.held_out)
     for r in ranking:
-        found = tried(p, r, held, before)
+        found = tried(p, r, held, before, r.term.name in named)
         rms = {CHANNEL[c].key: value for c, value in found.rms.items()}
         why = reason(found, r.term.name, named) + (TAKEN if r.term.name in confounded else "")
         out.append(Candidate(r.term.name, r.evidence, why, rms))
     return tuple(out)
 
 
-def tried(p: Prepared, r: Scored, held: Design, before: Mapping[Key, Array]) -> Tried:
+def tried(p: Prepared, r: Scored, held: Design, before: Mapping[Key, Array], is_named: bool = False) -> Tried:
     """Baseline and this one effect fitted together, in the bank's shape, and read on the held-out runs, whose design
-    without any effect is `held`."""
+    without any effect is `held`: in the loud channel that it changes most, or where it `is_named` in any."""
     s = fit(extended(p.baseline.design, r.term, p.split.fitted))
     after = p.held_out.residuals(s, extended(held, r.term, p.held_out.runs))
     rms: dict[str, float] = {}
@@ -65,14 +67,16 @@ def tried(p: Prepared, r: Scored, held: Design, before: Mapping[Key, Array]) -> 
         (first, n), (left, _) = p.held_out.excess(before, keys), p.held_out.excess(after, keys)
         changes[c], excess[c] = abs(first - left), first / n
         shares[c] = (first - left) / max(first - n, 0.02 * n)
-    loud = {c: change for c, change in changes.items() if excess[c] > QUIET**2} or changes
+    loud = {c: change for c, change in changes.items() if is_named or excess[c] > QUIET**2} or changes
     channel = max(loud, key=lambda c: loud[c])
-    return Tried(rms, float(shares[channel]), channel)
+    return Tried(rms, float(shares[channel]), channel, excess[channel] > 1.0)
 
 
 def reason(found: Tried, name: str, named: Sequence[str]) -> str:
     """One sentence on what it does alone, and beside the effects that were named."""
     quantity = CHANNEL[found.channel].name
+    if name in named and not found.over and found.share > 0:
+        return f"alone it lowers the held-out {quantity}, which is above its floor in single runs only"
     where = f"of the excess in the held-out {quantity}"
     if abs(found.share) < 0.005:
         return f"alone it removes nothing {where}"

@@ -12,14 +12,15 @@ from rig.model.effects import LIBRARY
 
 HOUSING, SPRING = "support_compliance", "nonlinear_stiffness"
 OF_EITHER: Final = "a spring that is not linear (the gear's, or the housing's mount: no channel tells which)"
+FINELY: Final = 2.0  # floors, up to which a tenth is as much as what is said to fall
 FORETELLS_NOTHING: Final = 0.05  # of the excess: so much is chance
 
 
 def lacks(names: Sequence[str], before: float, after: float, of: str = "worst") -> str:
     """Which effects the model lacks, and what they do to a channel's held-out RMS over floor."""
-    them = "them" if len(names) > 1 else "it"
+    them, first = "them" if len(names) > 1 else "it", f"{before:.{1 if before > FINELY else 2}f}"
     return (
-        f"The model lacks {in_words(names)}: with {them} the {of} held-out error of a channel falls from {before:.1f} "
+        f"The model lacks {in_words(names)}: with {them} the {of} held-out error of a channel falls from {first} "
         f"to {after:.2f} times the floor."
     )
 
