@@ -37,16 +37,14 @@ def shown_by_windup(lock: Source, slow: FourierSeries) -> bool:
 
 def _told(lock: Source) -> tuple[Array, Array, Array] | None:
     """Motor angle [rad] and wind-up [rad] of the test's means (n,), and a line in the torque with a gap, (n, 3)."""
-    motion, tau = motion_of(lock), None
-    if motion is not None:
-        tau = motion.pick(lock.column("tau_l"))
-    if motion is None or motion.theta_l is None or tau is None or not np.isfinite(tau).all():
+    motion = motion_of(lock)
+    if motion is None or motion.theta_l is None:
         return None
-    size = tau.size // ROWS
-    if size < 1 or not np.ptp(tau):
+    tau = motion.pick(lock.column("tau_l"))
+    if tau is None or not np.isfinite(tau).all() or not np.ptp(tau) or (size := tau.size // ROWS) < 1:
         return None
-    mean = [x[: ROWS * size].reshape(ROWS, size).mean(axis=1) for x in (motion.theta_m, motion.theta_l, tau)]
-    theta, load, torque = mean
+    read = (motion.theta_m, motion.theta_l, tau)
+    theta, load, torque = (x[: ROWS * size].reshape(ROWS, size).mean(axis=1) for x in read)
     line = np.column_stack([np.ones(ROWS), torque, np.sign(np.gradient(torque))])
     return theta, transmission_error(theta, load, motion.ratio), line
 

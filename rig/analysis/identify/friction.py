@@ -105,7 +105,7 @@ def _bend(plain: Array, omega: Array, y: Array, v: Array) -> str:
         f"Friction is no straight line over the speed: a part that goes with its square is "
         f"{pm(square * top**2, half * top**2, 'N·m')} at {top / RPM:.0f} rpm, and beside it the drag is {drag} and the "
         f"Coulomb friction {coulomb}. Those of the straight line are off by more than their intervals say; hdrig trace "
-        "names what bends it."
+        "looks for what bends it."
     )
 
 

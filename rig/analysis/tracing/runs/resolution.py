@@ -51,7 +51,8 @@ def counts_of(x: Array | None, declared: float) -> float:
     steps from its first row; 0 where it is none."""
     if declared > 0 or x is None or (step := smallest_step(x)) <= 0:
         return declared
-    steps = (x[np.isfinite(x)] - x[np.isfinite(x)][0]) / step
+    known = x[np.isfinite(x)]
+    steps = (known - known[0]) / step
     return 2 * np.pi / step if step > FINEST and np.all(np.abs(steps - np.round(steps)) < WHOLE) else 0.0
 
 
