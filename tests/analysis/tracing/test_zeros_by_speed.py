@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import zeros_by_speed as module
+from rig.analysis.tracing.rest import zeros_along as module
 from rig.analysis.tracing.rest.zeros_by_speed import ZerosBySpeed, zeros_by_speed
 from tests.analysis.tracing.zeros import SOFT, solution_of
 

@@ -61,10 +61,9 @@ def drifting_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     shifts them was not measured. The zero of every torque sensor drifts: that shifts θ̃ less its wind-up, and as much
     the balance of the load, is no drift of the angles, and told only where it is much."""
     eq = s.design.eq
-    mine, others = (free(eq, runs) for runs in (fitted, unseen))
-    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
+    if (runs := both_free(eq, fitted, unseen)) is None:
         return None
-
+    mine, others = runs
     seen = _drift(eq, mine, others, [np.array([zero(s, i, "A") for i in runs]) for runs in (mine, others)])
     if seen is None or not of_the_torque_sensor(s, (*mine, *others)):
         return seen
@@ -96,6 +95,15 @@ def _drift(eq: Equations, mine: Sequence[int], others: Sequence[int], found: Seq
         return None
     size = float(fit[1]) * float(np.ptp(falling(np.concatenate([since, later]), tau)[:, 1]))
     return DriftingZeros(size, tau, 1 - (left / spread) ** 2)
+
+
+def both_free(
+    eq: Equations, fitted: Sequence[int], unseen: Sequence[int], read: frozenset[str] = MEASURED
+) -> tuple[list[int], list[int]] | None:
+    """Those of both that are `free`; None where they are too few, or what is `read` in all was not in one."""
+    mine, others = (free(eq, runs) for runs in (fitted, unseen))
+    enough = len(mine) >= FITTED and len(others) >= UNSEEN
+    return (mine, others) if enough and all(eq.runs[i].has >= read for i in (*mine, *others)) else None
 
 
 def free(eq: Equations, runs: Sequence[int]) -> list[int]:

@@ -16,14 +16,12 @@ from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import zero
 from rig.analysis.tracing.rest.drifting_zeros import (
-    FITTED,
     PLAINER,
     SENSOR,
-    UNSEEN,
+    both_free,
     constants,
     falling,
     foretold,
-    free,
     largest_torque,
     rivals,
     times,
@@ -75,9 +73,9 @@ def warm_zeros(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> War
     alone does, by much.
     """
     eq = s.design.eq
-    mine, others = (free(eq, runs) for runs in (fitted, unseen))
-    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= READ for i in (*mine, *others)):
+    if (runs := both_free(eq, fitted, unseen, READ)) is None:
         return None
+    mine, others = runs
     if not float(np.ptp(_warmth(eq, (*mine, *others)))) > WARMER:  # NaN where it was not read
         return None
     if (angles := _following(eq, mine, others, [[_zero(s, i) for i in runs] for runs in (mine, others)])) is not None:

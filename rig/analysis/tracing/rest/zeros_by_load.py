@@ -14,21 +14,12 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, zero
-from rig.analysis.tracing.rest.drifting_zeros import (
-    FITTED,
-    LEFT,
-    PLAINER,
-    UNSEEN,
-    constants,
-    falling,
-    foretold,
-    free,
-    times,
-)
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor
+from rig.analysis.tracing.rest.drifting_zeros import both_free
+from rig.analysis.tracing.rest.zeros_along import along
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC
-from rig.model.effect import MEASURED, Array
+from rig.model.effect import Array
 
 WEIGHTS: Final = 4  # different ones, none among them: of three a curve is through any zeros
 
@@ -55,18 +46,15 @@ def zeros_by_load(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> 
     """None where θ̃'s zeros go with no weight, or as well with speed or time, or where the wind-up that shifts them was
     not measured."""
     eq = s.design.eq
-    mine, others = (free(eq, runs) for runs in (fitted, unseen))
-    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
+    if (runs := both_free(eq, fitted, unseen)) is None:
         return None
-    weights, later = (_weights(eq, runs) for runs in (mine, others))
-    if np.unique(weights.round(1)).size < WEIGHTS or of_the_torque_sensor(s, (*mine, *others)):
+    mine, others = runs
+    if np.unique(_weights(eq, mine).round(1)).size < WEIGHTS or of_the_torque_sensor(s, (*mine, *others)):
         return None
-    zeros, wanted = (np.array([zero(s, i, "A") for i in runs]) for runs in (mine, others))
-    guess, fit, own = foretold(_curve(weights), _curve(later), zeros)
-    spread, left = (float(np.sqrt(np.mean((wanted - x) ** 2))) for x in (zeros.mean(), guess))
-    if left > LEFT * spread or own > PLAINER * min(_others(eq, mine, zeros)):
-        return None
-    return ZerosByLoad(float(np.ptp(_curve(np.concatenate([weights, later])) @ fit)), 1 - (left / spread) ** 2)
+    speed = np.array([mean_speed(eq.runs[i]) for i in mine])
+    way_and_speed = np.stack([np.ones(speed.size), speed, np.abs(speed)], 1)
+    found = along(s, mine, others, lambda runs: _curve(_weights(eq, runs)), [way_and_speed])
+    return ZerosByLoad(found.size, found.foretold) if found else None
 
 
 def _weights(eq: Equations, runs: Sequence[int]) -> Array:
@@ -77,12 +65,3 @@ def _weights(eq: Equations, runs: Sequence[int]) -> Array:
 def _curve(weight: Array) -> Array:
     """A constant, the weight [N·m] (n,), and its root as it pulls, (n, 3)."""
     return np.stack([np.ones(weight.size), weight, np.sign(weight) * np.sqrt(np.abs(weight))], 1)
-
-
-def _others(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
-    """RMS left of the zeros by what else may shift them: the way and the speed, a drift of any time constant."""
-    speed = np.array([mean_speed(eq.runs[i]) for i in runs])
-    since = times(eq, runs)
-    made = [np.stack([np.ones(speed.size), speed, np.abs(speed)], 1)]
-    made += [falling(since, tau) for tau in constants(max(float(np.ptp(since)), 1.0))]
-    return [foretold(z, z, zeros)[2] for z in made]

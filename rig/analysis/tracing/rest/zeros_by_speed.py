@@ -14,22 +14,13 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, zero
-from rig.analysis.tracing.rest.drifting_zeros import (
-    FITTED,
-    LEFT,
-    PLAINER,
-    UNSEEN,
-    constants,
-    falling,
-    foretold,
-    free,
-    times,
-)
+from rig.analysis.tracing.floor.offsets import of_the_torque_sensor
+from rig.analysis.tracing.rest.drifting_zeros import both_free
 from rig.analysis.tracing.rest.levels import LEVELS, levels
+from rig.analysis.tracing.rest.zeros_along import along
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC
-from rig.model.effect import MEASURED, Array
+from rig.model.effect import Array
 
 
 @dataclass(frozen=True)
@@ -59,33 +50,26 @@ def zeros_by_speed(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) ->
     """None where θ̃'s zeros go with no speed, or as well with time or torque, or where the wind-up that shifts them
     was not measured."""
     eq = s.design.eq
-    mine, others = (free(eq, runs) for runs in (fitted, unseen))
-    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
+    if (runs := both_free(eq, fitted, unseen)) is None:
         return None
-    zeros, wanted = (np.array([zero(s, i, "A") for i in runs]) for runs in (mine, others))
-    fast, later = (np.array([eq.runs[i].turning for i in runs]) for runs in (mine, others))
-    if np.unique(levels(fast)).size < LEVELS:
+    mine, others = runs
+    if np.unique(levels(_speeds(eq, mine))).size < LEVELS:
         return None
-    guess, fit, own = foretold(_curve(fast), _curve(later), zeros)
-    spread = float(np.sqrt(np.mean((wanted - zeros.mean()) ** 2)))
-    left = float(np.sqrt(np.mean((wanted - guess) ** 2)))
-    if left > LEFT * spread or own > PLAINER * min(_others(eq, mine, zeros)):
+    way = np.array([mean_speed(eq.runs[i]) for i in mine])
+    torque = np.array([eq.runs[i].mean_torque for i in mine])
+    instead = [np.stack([np.ones(x.size), x], 1) for x in (way, torque)]
+    found = along(s, mine, others, lambda runs: _curve(_speeds(eq, runs)), instead)
+    if found is None:
         return None
-    size = float(np.ptp(_curve(np.concatenate([fast, later])) @ fit))
-    torque = size / s.value("compliance") if of_the_torque_sensor(s, (*mine, *others)) else 0.0
-    return ZerosBySpeed(size, 1 - (left / spread) ** 2, torque)
+    sensed = found.size / s.value("compliance") if of_the_torque_sensor(s, (*mine, *others)) else 0.0
+    return ZerosBySpeed(found.size, found.foretold, sensed)
+
+
+def _speeds(eq: Equations, runs: Sequence[int]) -> Array:
+    """Of the motor in each run, whichever way, rad/s."""
+    return np.array([eq.runs[i].turning for i in runs])
 
 
 def _curve(speed: Array) -> Array:
     """A constant and a parabola over the speed [rad/s] (n,), (n, 3)."""
     return np.stack([np.ones(speed.size), speed, speed**2], 1)
-
-
-def _others(eq: Equations, runs: Sequence[int], zeros: Array) -> list[float]:
-    """RMS left of the zeros by what else may shift them: the way, a torque, a drift of any time constant."""
-    way = np.array([mean_speed(eq.runs[i]) for i in runs])
-    torque = np.array([eq.runs[i].mean_torque for i in runs])
-    since = times(eq, runs)
-    made = [np.stack([np.ones(x.size), x], 1) for x in (way, torque)]
-    made += [falling(since, tau) for tau in constants(max(float(np.ptp(since)), 1.0))]
-    return [foretold(z, z, zeros)[2] for z in made]

@@ -15,10 +15,10 @@ import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, zero
-from rig.analysis.tracing.rest.drifting_zeros import FITTED, LEFT, PLAINER, UNSEEN, foretold, free, rivals
+from rig.analysis.tracing.rest.drifting_zeros import LEFT, PLAINER, both_free, foretold, rivals
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC, RPM
-from rig.model.effect import MEASURED, Array
+from rig.model.effect import Array
 
 EACH_WAY: Final = 2  # runs, above that speed and below: one is what any run may have
 
@@ -45,9 +45,9 @@ class ZerosByWay:
 def zeros_by_way(s: Solution, fitted: Sequence[int], unseen: Sequence[int]) -> ZerosByWay | None:
     """None where θ̃'s zeros do not so, or as well what else shifts them, or where the wind-up was not measured."""
     eq = s.design.eq
-    mine, others = (free(eq, runs) for runs in (fitted, unseen))
-    if len(mine) < FITTED or len(others) < UNSEEN or any(not eq.runs[i].has >= MEASURED for i in (*mine, *others)):
+    if (runs := both_free(eq, fitted, unseen)) is None:
         return None
+    mine, others = runs
     zeros, wanted = (np.array([zero(s, i, "A") for i in runs]) for runs in (mine, others))
     speed, later = (np.array([mean_speed(eq.runs[i]) for i in runs]) for runs in (mine, others))
     tried = [(above, foretold(_step(speed, above), _step(later, above), zeros)) for above in _between(speed)]
