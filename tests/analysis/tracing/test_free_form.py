@@ -15,6 +15,7 @@ from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.free_form import along_another as another
 from rig.analysis.tracing.free_form import drawn as drawn_of
+from rig.analysis.tracing.free_form import fitted as fitted_of
 from rig.analysis.tracing.free_form.factors import began, hats, motor_waves, past_torque, turned
 from rig.analysis.tracing.free_form.forms import forms
 from rig.analysis.tracing.free_form.ranges import Ranges
@@ -216,6 +217,28 @@ def test_the_form_that_fitted_runs_want_most_is_drawn_as_fine_as_is_worth_it_if_
         monkeypatch.setattr(drawn_of, name, made)
     nobody, alone = NOBODY[0], SimpleNamespace(x=np.zeros(70))
     assert drawn_of.drawn(nobody, alone, {}, "speed") == drawn  # type: ignore[arg-type]
+
+
+def noisy(left: dict[str, float]) -> Solution:
+    """A fit of which sensors leave so much noise in each channel, RMS."""
+    noise = {(run, c): np.full(5, rms) for c, rms in left.items() for run in (0, 3)}
+    design = SimpleNamespace(noise=noise, noise_left=lambda key, x: noise[key])
+    return cast("Solution", SimpleNamespace(design=design, x=np.zeros(3)))
+
+
+@pytest.mark.parametrize(
+    ("with_it", "itself"),
+    [
+        ({"L": 0.0002, "M": 0.001}, True),  # a curve along the torque that is the torque's own reading
+        ({"L": 0.0074, "M": 0.001}, True),
+        ({"L": 0.0112, "M": 0.0014}, False),
+        ({"L": 0.0089, "M": 0.001}, False),  # an inertia came out smaller beside it
+    ],
+)
+def test_a_form_that_foretells_the_noise_of_a_sensor_is_told_by_its_reading(
+    with_it: dict[str, float], itself: bool
+) -> None:
+    assert fitted_of._takes_noise(noisy({"L": 0.0112, "M": 0.001}), noisy(with_it)) == itself
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, extended, fit
 from rig.analysis.tracing.fit.some import Bounds, of_some
@@ -19,12 +20,14 @@ from rig.analysis.tracing.workers import each
 
 RIDGE: Final = 1e-6  # of a column's square: some are sums of others, and of the baseline's
 SURFACE: Final = 0.9  # of its evidence
+KEPT: Final = 0.7  # of the sensors' noise in a channel, RMS, the least that a form leaves there
 RANKED: Final = Bounds(15_000, 12_000, 400)  # rows that tell which of some dozen forms may be the best
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """The model with that form, and its evidence in nats      [hastie2009, Sec. 7.7]"""
+    """The model with that form, and its evidence in nats, 0 where it foretells the sensors' noise      [hastie2009,
+    Sec. 7.7]"""
 
     form: FreeForm
     solution: Solution
@@ -64,5 +67,19 @@ def fitted(p: Prepared, s: Solution, form: FreeForm) -> Fitted:
     gram = d.gram.copy()
     gram[mine, mine] *= 1 + RIDGE
     made = fit(replace(d, gram=gram))
+    if _takes_noise(s, made):
+        return Fitted(form, made, 0.0)
     rows = sum(d.y[key].size / d.eq.noise.kappa[key[1]] for key in s.keys)
     return Fitted(form, made, (made.gain - s.gain) / 2 - mine.size / 2 * float(np.log(rows)))
+
+
+def _takes_noise(before: Solution, after: Solution) -> bool:
+    """Whether a channel has less of its sensors' noise with the form: no law foretells that, but a torque told by its
+    own reading does, where little else in the campaign tells it."""
+    return any(_noise(after, c) < KEPT * _noise(before, c) for c in WHOLE)
+
+
+def _noise(s: Solution, channel: str) -> float:
+    """What sensor noise leaves in a channel, RMS; 0 where no block of it is known for that."""
+    left = [s.design.noise_left(key, s.x) for key in s.design.noise if key[1] == channel]
+    return float(np.sqrt(np.mean(np.square(np.concatenate(left))))) if left else 0.0
