@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
+from math import isfinite
 from typing import Any, Protocol
 
 from rig.control.setpoints import AsTorque, Setpoints
@@ -30,6 +31,7 @@ SETTLED = 0.3  # s after the torque is off: the load of a wound-up gear has swun
 LET_GO = 1.5  # s after the torque is off: most motors rest by then, and of one that does not people have to know soon
 LOOKS, APART = 10, 0.01  # looks at the shaft torque then, s between two
 WOUND = 0.05  # of the shaft torque allowed: the zero of a sensor and the friction of the load leave less
+UNTOLD = Flag.STALE_TAU | Flag.FROZEN_TAU | Flag.SATURATED_TAU  # of a torque that is not that of now
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
 
 
@@ -100,6 +102,7 @@ class Loop:
         except NotReady as error:
             if self.instruments.safe():
                 self.supervisor.act(Act.FINISH if self.running else Act.TRIP, str(error))
+                self._warn(error)
                 raise
             ending = Ending("tripped", str(error), Exit.TRIPPED)  # energised and lost is more than not ready
         except BaseException as error:
@@ -108,6 +111,7 @@ class Loop:
                 why = self._unconfirmed(why)
                 error.add_note(f"{UNCONFIRMED}: {PRESS}")
             self.supervisor.act(Act.TRIP, why)
+            self._warn(error)
             raise
         finally:
             confirmed = self.instruments.safe()
@@ -269,8 +273,21 @@ class Loop:
         self.sink.put(sample, self.setpoints.off, self.setpoints.off, asked.theta_ref)
         self.rows += 1
 
+    def _warn(self, error: BaseException) -> None:
+        """What is still there goes with an error, and with the fault that it latched. Never raises."""
+        if seen := self._still_there():
+            error.add_note(seen.removeprefix("; "))
+            if self.supervisor.state is State.FAULT:
+                self.supervisor.amend(seen)
+
+    def _still_there(self) -> str:
+        """What keeps turning or stays wound up though the motor gives no torque, in words for who walks up to it; ""
+        where nothing is seen of either. Never raises.
+        """
+        return self._wound_up() + self._turns_on()
+
     def _wound_up(self) -> str:
-        """That the shaft carries torque though the motor gives none, as of a gear halted while it was wound up, in
+        """That the shaft carries torque though the motor gives none, as of a gear let go while it was wound up, in
         words; "" where nothing is seen of it. Never raises: the torque is off, and no bus that fails now undoes a halt.
         """
         limit = self.guard.limits.shaft_torque
@@ -306,8 +323,9 @@ class Loop:
         for _ in range(LOOKS):
             clock.wait_until(clock.now() + APART)
             looks.append(self.instruments.look())
-        told = [look.tau_l for look in looks if look.age <= self.guard.limits.stale]
-        return sum(told) / len(told) if told else 0.0  # a sensor that is silent says nothing of now
+        fresh = [look for look in looks if look.age <= self.guard.limits.stale and not look.flags & UNTOLD]
+        told = [look.tau_l for look in fresh if isfinite(look.tau_l)]
+        return sum(told) / len(told) if told else 0.0  # a sensor that is silent or past its range says nothing of now
 
     def _unconfirmed(self, why: str) -> str:
         """A reason, and that there may be torque still."""
@@ -321,11 +339,11 @@ class Loop:
             return Ending("tripped", why, Exit.TRIPPED, ending.finding)
         if ending.status == "tripped":
             self.supervisor.act(Act.TRIP, ending.reason)  # latched before anything is looked at
-            if seen := self._turns_on():
+            if seen := self._still_there():
                 ending = replace(ending, reason=f"{ending.reason}{seen}")
                 self.supervisor.amend(seen)
         elif ending.exit is Exit.HALTED:
-            ending = replace(ending, reason=f"{ending.reason}{self._wound_up()}{self._turns_on()}")
+            ending = replace(ending, reason=f"{ending.reason}{self._still_there()}")
             self.supervisor.act(Act.HALT, ending.reason)
         else:
             self.supervisor.act(Act.FINISH, ending.reason)

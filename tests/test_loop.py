@@ -239,6 +239,51 @@ def test_a_halt_of_a_wound_up_gear_says_how_much_torque_is_left(left: float, sai
     assert told[-1] == (State.READY, ending.reason)
 
 
+WOUND = "the shaft still carries +14.8 N·m: the gear is wound up or loaded, keep clear of it"
+
+
+def wound_up(bench: Bench, then: Callable[[], None] = lambda: None) -> Callable[[], None]:
+    """A gear that carries torque from there on; `then` something happens."""
+
+    def at() -> None:
+        bench.world.tau_l = 14.84
+        then()
+
+    return at
+
+
+def test_a_trip_of_a_wound_up_gear_says_how_much_torque_is_left() -> None:
+    bench = Bench()
+    ending = bench.run(wound_up(bench, lambda: setattr(bench.world, "fault", "over-current")))
+    assert ending.reason == f"a device reports a fault: over-current; {WOUND}"
+    assert bench.supervisor.fault == ending.reason
+
+
+@pytest.mark.parametrize("error", [NotReady("the load does not hold still"), RecorderError("disk full"), ValueError("")])
+def test_an_error_under_a_wound_up_gear_says_how_much_torque_is_left(error: Exception) -> None:
+    bench = Bench()
+
+    def fail() -> None:
+        raise error
+
+    with pytest.raises(type(error)) as raised:
+        bench.run(wound_up(bench, fail))
+    assert raised.value.__notes__ == [WOUND]
+    assert bench.supervisor.state is (State.READY if isinstance(error, NotReady) else State.FAULT)
+    assert bench.supervisor.fault.endswith(WOUND) != isinstance(error, NotReady)
+
+
+@pytest.mark.parametrize(("tau", "flags"), [(float("inf"), Flag.SATURATED_TAU), (44.0, Flag.FROZEN_TAU)])
+def test_a_torque_sensor_that_tells_nothing_of_now_is_not_believed_after_a_trip(
+    tau: float, flags: Flag, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench = Bench()
+    look = Instruments.look
+    monkeypatch.setattr(Instruments, "look", lambda self: look(self)._replace(tau_l=tau, flags=flags))
+    ending = bench.run(lambda: setattr(bench.world, "fault", "over-current"))
+    assert ending.reason == "a device reports a fault: over-current"
+
+
 def test_a_bus_that_fails_after_the_torque_is_off_undoes_no_halt(monkeypatch: pytest.MonkeyPatch) -> None:
     bench = Bench()
 

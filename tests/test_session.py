@@ -28,11 +28,11 @@ def session(tmp_path: Path) -> Iterator[Session]:
         yield made
 
 
-@pytest.mark.parametrize("where", ["rig.recorder.Recorder.start", "rig.session.observer.Observer.begun"])
+@pytest.mark.parametrize("where", ["rig.recorder.Recorder.__init__", "rig.recorder.Recorder.start", "rig.session.observer.Observer.begun"])
 def test_a_run_that_cannot_begin_closes_its_folder_and_leaves_no_recorder(
     session: Session, monkeypatch: pytest.MonkeyPatch, where: str
 ) -> None:
-    def refused(*_: object) -> None:
+    def refused(*_: object, **__: object) -> None:
         raise RecorderError("no room for it")
 
     monkeypatch.setattr(where, refused)

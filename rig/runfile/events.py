@@ -28,9 +28,17 @@ class EventLog:
 
     def write(self, kind: str, text: str, t: float | None = None, **more: Any) -> None:
         """One event. `kind` is state, trip, operator, note …; `t` is run time [s] if known. Raises RecorderError."""
-        line = json.dumps({"t": t, "utc": self._utc(), "kind": kind, "text": text, **more}, ensure_ascii=False)
+        self.append(self.line(kind, text, t, **more))
+
+    def line(self, kind: str, text: str, t: float | None = None, **more: Any) -> bytes:
+        """An event as it is written, with the time of now beside it."""
+        event = {"t": t, "utc": self._utc(), "kind": kind, "text": text, **more}
+        return json.dumps(event, ensure_ascii=False).encode(errors="replace") + b"\n"
+
+    def append(self, line: bytes) -> None:
+        """One line of events. Raises RecorderError."""
         with told(RecorderError, f"events of the run cannot be written to {self.path}"):
-            self._file.write(line.encode(errors="replace") + b"\n")
+            self._file.write(line)
 
     def close(self) -> None:
         """Idempotent."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
-from rig.core.errors import HdrigError
 from rig.runfile.events import EventLog
+from rig.session.behind import Behind
 from rig.session.observer import Observer
 from rig.supervisor import Act, State
 
@@ -22,14 +21,15 @@ class SessionLog:
         self._run_time = run_time
         self._observer = observer
         self._early: list[tuple[str, str]] = []  # events before there is a folder for them
-        self._log: EventLog | None = None
+        self._log: Behind | None = None
 
     def open(self, folder: Path) -> None:
         """From here events go into `folder`, those that wait first. Raises RecorderError."""
-        self._log = EventLog(folder)
+        log = EventLog(folder)
         for kind, text in self._early:
-            self._log.write(kind, text)
+            log.write(kind, text)
         self._early.clear()
+        self._log = Behind(log)
 
     def announce(self, state: State, act: Act, why: str) -> None:
         """The supervisor's change of state, as an event."""
@@ -40,16 +40,16 @@ class SessionLog:
         self.event(KINDS.get(act, "state"), text)
 
     def event(self, kind: str, text: str) -> None:
-        """`kind` as in `events.jsonl`: state, trip, operator, note, finding."""
-        self._observer.event(kind, text, None if self._log is None else self._run_time())
+        """`kind` as in `events.jsonl`: state, trip, operator, note, finding. Never waits for the disk."""
+        t = None if self._log is None else self._run_time()
+        self._observer.event(kind, text, t)
         if self._log is None:
             self._early.append((kind, text))
-            return
-        with contextlib.suppress(HdrigError):  # a full disk shows in the rows; it must not stand in the way of a stop
-            self._log.write(kind, text, self._run_time())
+        else:
+            self._log.write(kind, text, t)
 
     def close(self) -> None:
-        """No folder takes events any more. Idempotent."""
+        """No folder takes events any more: those told are written, unless the disk hangs. Idempotent."""
         if self._log is not None:
             self._log.close()
             self._log = None

@@ -44,10 +44,11 @@ class Recording:
 
         Raises Ended when rows are lost, and what the loop raises once the drive is safe.
         """
-        recorder = Recorder(folder, self.instruments.clock, interrupted=lambda: self.interrupts.count > 0)
+        recorder: Recorder | None = None
         ending, problem, rows = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), "", 0
         failed: HdrigError | None = None
         try:
+            recorder = Recorder(folder, self.instruments.clock, interrupted=lambda: self.interrupts.count > 0)
             recorder.start()
             loop = self._loop(recorder, folder, procedure, mode, watch)
             try:
@@ -92,16 +93,18 @@ class Recording:
 
         return watches
 
-    def _close(self, recorder: Recorder, folder: Path, ending: Ending, rows: int) -> str:
-        """Every row to disk, then the run closed; a sentence where that fails: the rows then stay where they are."""
+    def _close(self, recorder: Recorder | None, folder: Path, ending: Ending, rows: int) -> str:
+        """Every row to disk, then the run closed; a sentence where that fails: the rows then stay where they are. No
+        `recorder`: there was no memory for its ring, and nothing was energised."""
         facts: dict[str, Any] = {"exit": int(ending.exit)}
         if ending.finding is not None:
             facts["finding"] = str(getattr(ending.finding, "sentence", ending.finding))
             self.log.event("finding", facts["finding"])
         try:
             # what the recorder could not write is in the ring: closing the run tries again
-            with contextlib.suppress(RecorderError):
-                recorder.close()
+            if recorder is not None:
+                with contextlib.suppress(RecorderError):
+                    recorder.close()
             self.log.close()  # its hash is taken next: nothing may be added after
             summary = self.timing.summary()
             closed = finalise(folder, ending.status, ending.reason, timing=summary, expected_rows=rows, **facts)

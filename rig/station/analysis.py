@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any, final
 
@@ -23,8 +24,9 @@ class Analysis:
         """`what`: ANALYSE a run, or AFTERWARDS for a campaign."""
         self.folder = folder
         command = [sys.executable, "-m", *what, str(folder)]
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115 - a pipe that nobody reads would hold it up once full
         self._process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self._said
         )
 
     @property
@@ -34,7 +36,7 @@ class Analysis:
 
     def found(self) -> dict[str, Any]:
         """Of a done one: `report` path, `verdict`, `sentence`; without a report the sentence says why."""
-        _, said = self._process.communicate()
+        said = self._last_words()
         if self._process.returncode not in TOLD:
             why = said.strip().splitlines()[-1] if said.strip() else f"exit code {self._process.returncode}"
             return {"report": None, "verdict": None, "sentence": f"not analysed: {why.removeprefix('hdrig: ')}"}
@@ -50,7 +52,15 @@ class Analysis:
             "sentence": result.get("sentence"),
         }
 
+    def _last_words(self) -> str:
+        self._process.wait()
+        self._said.seek(0)
+        said = self._said.read().decode(errors="replace")
+        self._said.close()
+        return said
+
     def end(self) -> None:
         """Leave it unfinished."""
         self._process.kill()
-        self._process.communicate()
+        self._process.wait()
+        self._said.close()
