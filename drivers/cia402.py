@@ -25,7 +25,7 @@ from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
 from rig.core.clock import NEVER, is_never
-from rig.core.devices import Drive, DriveReading, Identity
+from rig.core.devices import Drive, DriveReading, Identity, Watchdog
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
 from rig.core.units import TURN
@@ -58,7 +58,8 @@ class Cia402(Drive):
         self.node = Node(self.bus, place.need("node"), "drive")
         self.remarks = self.node.remarks
         self.place = place
-        self.guarded = ""  # what stops the drive when this program dies, in words
+        self.watchdog = Watchdog()
+        self._armed = 0  # the object that sets it
         self.mode = Mode.TORQUE
         self._inputs, self._outputs = Inputs(self.node, place.period), Outputs(self.node)
         self._direction = place.options.get("direction", 1)
@@ -98,7 +99,7 @@ class Cia402(Drive):
         self.node.produce_heartbeat()
         set_limits(self.node, self.place)
         self._take_mode(Mode.TORQUE)
-        self.guarded = self._arm()
+        self._arm()
         self._disarm()
 
     def _take_mode(self, mode: Mode) -> None:
@@ -115,12 +116,12 @@ class Cia402(Drive):
         self._outputs.arrange(target.mapped, [*CHOSEN, *others])
         self.mode = mode
 
-    def _arm(self) -> str:
+    def _arm(self) -> None:
         seconds = self.place.options.get("watchdog", max(WATCHDOG, LONGER * self.place.stale))
-        return watchdog402.arm(self.node, round(1000 * seconds))
+        self.watchdog, self._armed = watchdog402.arm(self.node, round(1000 * seconds))
 
     def _disarm(self) -> None:
-        watchdog402.disarm(self.node, self.guarded)
+        watchdog402.disarm(self.node, self._armed)
 
     def _first_reading(self) -> None:
         self.bus.frames.clear()

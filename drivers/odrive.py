@@ -19,7 +19,7 @@ from drivers.unwrap import LATE
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
 from rig.core.clock import NEVER
-from rig.core.devices import Drive, DriveReading, Identity, torque_only
+from rig.core.devices import Drive, DriveReading, Identity, Watchdog, torque_only
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Setpoint
 from rig.core.units import TURN
@@ -48,10 +48,10 @@ class ODrive(Drive):
         self.bus = wiring.bus(place, cs.PROTOCOL)
         self.axis = Axis(self.bus, place.need("node"), "drive")
         self.place = place
-        self.guarded = ""  # what stops the drive when this program dies, in words
+        self.watchdog = Watchdog()
         self._direction = place.options.get("direction", 1)
         self._constant = place.options.get("torque_constant")
-        self._watchdog = place.options.get("watchdog")
+        self._declared = place.options.get("watchdog")  # s
         self._most = max(LATE * place.speed_limit * place.period / TURN, 1 / place.counts_per_turn)  # turns
         self._motion, self._effort = self.axis.id(cs.ESTIMATES), self.axis.id(cs.TORQUES)
         self._gain = 1.0  # N·m per unit of the effort's reading
@@ -68,7 +68,7 @@ class ODrive(Drive):
         self._choose_readings()
         self._limit()
         self._connected = True
-        self.guarded = self._watched()
+        self.watchdog = self._watched()
         self._first_reading()
         return identity
 
@@ -96,17 +96,19 @@ class ODrive(Drive):
             turns = SPEED_MARGIN * self.place.speed_limit / TURN
             self.axis.send(cs.SET_LIMITS, cs.encode_limits(turns, self.place.torque_limit / self._constant))
 
-    def _watched(self) -> str:
+    def _watched(self) -> Watchdog:
         """What the bench file declares of the watchdog, and whether it is seen to expire while the axis is idle."""
-        if self._watchdog is None:
-            return ""
+        if self._declared is None:
+            return Watchdog()
         self.axis.forgives = self.axis.expired  # nobody talks to an idle axis: that is no fault
+        told = f"watchdog of the axis, {self._declared * 1e3:g} ms"
         if self.axis.error:
-            return f"watchdog of the axis, {self._watchdog * 1e3:g} ms, declared; not tried, which proves nothing"
+            return Watchdog(f"{told}, declared; not tried, which proves nothing")
         self.axis.clear()
-        seen = self.bus.wait(1.5 * self._watchdog + 2 * self.axis.interval, lambda: self.axis.expired_now)
-        told = "seen to expire" if seen else "declared; it did not expire while idle, which proves nothing"
-        return f"watchdog of the axis, {self._watchdog * 1e3:g} ms, {told}"
+        seen = self.bus.wait(1.5 * self._declared + 2 * self.axis.interval, lambda: self.axis.expired_now)
+        if seen:
+            return Watchdog(f"{told}, seen to expire", is_proven=True)
+        return Watchdog(f"{told}, declared; it did not expire while idle, which proves nothing")
 
     def _first_reading(self) -> None:
         for identifier in (self._motion, self._effort):
@@ -250,7 +252,7 @@ class ODrive(Drive):
         if not self._connected:
             return False
         off = self._confirmed_off()
-        self.axis.forgives = self.axis.expired if self._watchdog is not None else 0
+        self.axis.forgives = self.axis.expired if self._declared is not None else 0
         return off
 
     def _confirmed_off(self) -> bool:

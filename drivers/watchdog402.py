@@ -10,32 +10,38 @@ import struct
 
 from drivers.node import Node
 from drivers.sdo import Refused
+from rig.core.devices import Watchdog
 
 NOTHING = 0  # of 6007h: a lost connection is nothing to the drive
 NO_CHANGE = 1  # of 1029h:1: a lost connection changes nothing in the node
-HEARTBEAT = "heartbeat consumer of the drive"
+HEARTBEAT, RPDO = 0x1016, 0x1400
 
 
-def arm(node: Node, limit: int) -> str:
-    """Set it to `limit` ms; what guards, in words, "" when nothing does. Raises NotReady when the node is silent."""
+def arm(node: Node, limit: int) -> tuple[Watchdog, int]:
+    """Set it to `limit` ms; what guards, and the object that was set, 0 for none. Raises NotReady when the node is
+    silent."""
     if not _stops_when_alone(node):
-        return ""
+        return Watchdog(), 0
     host = node.bus.host_node
     with contextlib.suppress(Refused):
-        if host and node.sdo.write_if_there(0x1016, 1, struct.pack("<I", host << 16 | limit)):
-            return f"{HEARTBEAT}, {limit} ms, set and read back"
+        if host and node.sdo.write_if_there(HEARTBEAT, 1, struct.pack("<I", host << 16 | limit)):
+            return _set("heartbeat consumer", limit), HEARTBEAT
     with contextlib.suppress(Refused):
-        if node.sdo.write_if_there(0x1400, 5, struct.pack("<H", limit)):
-            return f"RPDO timeout of the drive, {limit} ms, set and read back"
-    return ""
+        if node.sdo.write_if_there(RPDO, 5, struct.pack("<H", limit)):
+            return _set("RPDO timeout", limit), RPDO
+    return Watchdog(), 0
 
 
-def disarm(node: Node, guarded: str) -> None:
+def _set(what: str, limit: int) -> Watchdog:
+    return Watchdog(f"{what} of the drive, {limit} ms, set and read back", is_proven=True)
+
+
+def disarm(node: Node, armed: int) -> None:
     """Between runs nobody talks to the drive, and that is no fault. Raises NotReady."""
-    if guarded.startswith(HEARTBEAT):
-        node.sdo.put(0x1016, 1, struct.pack("<I", 0))
-    elif guarded:
-        node.sdo.put(0x1400, 5, struct.pack("<H", 0))
+    if armed == HEARTBEAT:
+        node.sdo.put(HEARTBEAT, 1, struct.pack("<I", 0))
+    elif armed == RPDO:
+        node.sdo.put(RPDO, 5, struct.pack("<H", 0))
 
 
 def _stops_when_alone(node: Node) -> bool:

@@ -19,7 +19,7 @@ from rig.guard import Guard, Trip, stale
 from rig.instruments import TURNS, Instruments
 from rig.process.interrupts import Interrupts
 from rig.process.realtime import RealTime
-from rig.supervisor import PRESS, UNCONFIRMED, Act, State, Supervisor
+from rig.supervisor import KEEP_CLEAR, PRESS, UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
 
 MOSTLY = 0.5  # of the age of stale data: a program that was away for less is not why they are stale
@@ -53,6 +53,7 @@ class Ending:
     reason: str
     exit: Exit
     finding: Any = None
+    confirmed: bool = True  # by the drive: that its torque is off
 
 
 class Loop:
@@ -298,7 +299,7 @@ class Loop:
             left = self._still_carried()
         if not abs(left) > WOUND * limit:
             return ""
-        return f"; the shaft still carries {left:+.1f} N·m: the gear is wound up or loaded, keep clear of it"
+        return f"; the shaft still carries {left:+.1f} N·m: the gear is wound up or loaded, {KEEP_CLEAR}"
 
     def _turns_on(self, last: Sample | None = None) -> str:
         """That the motor turns on without its torque, in words; "" where it comes to rest, as after a `last` sample
@@ -312,7 +313,7 @@ class Loop:
         if not speed:
             return ""
         return (
-            f"; the motor turns on at {speed / RPM:.0f} rpm without torque: keep clear of it; where a weight drives "
+            f"; the motor turns on at {speed / RPM:.0f} rpm without torque: {KEEP_CLEAR}; where a weight drives "
             "it, hold the output and take that off"
         )
 
@@ -336,7 +337,7 @@ class Loop:
         if not confirmed:
             why = self._unconfirmed(ending.reason)
             self.supervisor.act(Act.TRIP, why)
-            return Ending("tripped", why, Exit.TRIPPED, ending.finding)
+            return Ending("tripped", why, Exit.TRIPPED, ending.finding, confirmed=False)
         if ending.status == "tripped":
             self.supervisor.act(Act.TRIP, ending.reason)  # latched before anything is looked at
             if seen := self._still_there():

@@ -8,6 +8,7 @@ from enum import StrEnum
 from rig.core.errors import NotReady
 
 UNCONFIRMED = "the drive did not confirm that its torque is off"  # of a fault: there may be torque still
+KEEP_CLEAR = "keep clear of it"  # of what turns on or is wound up without the motor's torque: it is ready for nothing
 PRESS = "press the hard-wired stop, there may be torque still"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import socket
-from typing import Any, ClassVar, final
+from typing import Any, final
 
 from rig.core.errors import HdrigError, NotReady
 from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Reassemble
@@ -16,8 +16,6 @@ LONGEST_LINE = 65536  # bytes
 @final
 class TwinHand(Operator):
     """Speaks to the socket at `control`. The twin runs on by itself: what was done stays done."""
-
-    begins_anew: ClassVar[bool] = False
 
     def __init__(self, control: str) -> None:
         self.control = control

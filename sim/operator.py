@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from rig.core.errors import NotReady
 from rig.core.operator import Change, ClearFault, FreeOutput, HangWeight, LockOutput, Operator, Reassemble
 from sim.world import World
@@ -12,7 +10,7 @@ from sim.world import World
 class TwinOperator(Operator):
     """Acts on the twin's `world` directly."""
 
-    begins_anew: ClassVar[bool] = True
+    begins_anew = True
 
     def __init__(self, world: World) -> None:
         self.world = world

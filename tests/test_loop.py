@@ -259,7 +259,9 @@ def test_a_trip_of_a_wound_up_gear_says_how_much_torque_is_left() -> None:
     assert bench.supervisor.fault == ending.reason
 
 
-@pytest.mark.parametrize("error", [NotReady("the load does not hold still"), RecorderError("disk full"), ValueError("")])
+@pytest.mark.parametrize(
+    "error", [NotReady("the load does not hold still"), RecorderError("disk full"), ValueError("")]
+)
 def test_an_error_under_a_wound_up_gear_says_how_much_torque_is_left(error: Exception) -> None:
     bench = Bench()
 

@@ -10,12 +10,14 @@ from pathlib import Path
 import pytest
 
 from rig.bench import read
+from rig.core.devices import UNGUARDED, Drive, Watchdog
 from rig.core.errors import Ended, NotReady, RecorderError
-from rig.core.operator import HangWeight
+from rig.core.operator import Change, HangWeight, Operator, Reassemble, Rigging
 from rig.core.sample import Sample
 from rig.procedures.standstill import Standstill
 from rig.procedures.weigh import Weigh
 from rig.process.interrupts import Interrupts
+from rig.runfile.events import read_events
 from rig.runfile.run import Run
 from rig.session import Session, Watch
 from rig.session.observer import Begun, Observer
@@ -28,7 +30,9 @@ def session(tmp_path: Path) -> Iterator[Session]:
         yield made
 
 
-@pytest.mark.parametrize("where", ["rig.recorder.Recorder.__init__", "rig.recorder.Recorder.start", "rig.session.observer.Observer.begun"])
+@pytest.mark.parametrize(
+    "where", ["rig.recorder.Recorder.__init__", "rig.recorder.Recorder.start", "rig.session.observer.Observer.begun"]
+)
 def test_a_run_that_cannot_begin_closes_its_folder_and_leaves_no_recorder(
     session: Session, monkeypatch: pytest.MonkeyPatch, where: str
 ) -> None:
@@ -42,6 +46,46 @@ def test_a_run_that_cannot_begin_closes_its_folder_and_leaves_no_recorder(
     manifest = json.loads((session.folder / "manifest.json").read_text())
     assert manifest["status"] != "running"
     assert "no room for it" in manifest["exit_reason"]
+
+
+@pytest.mark.parametrize(
+    ("watchdog", "is_said"), [(None, False), (Watchdog("time-out, 100 ms", is_proven=True), False), (Watchdog(), True)]
+)
+def test_a_drive_that_nothing_would_stop_is_said_to_be_one_before_anything_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, watchdog: Watchdog | None, is_said: bool
+) -> None:
+    monkeypatch.setattr(Drive, "watchdog", watchdog)
+    with Session(read("twin"), "virtual", tmp_path, Interrupts()) as session:
+        done = session.run(Standstill(0.5))
+    told = [event["text"] for event in read_events(done.folder)]
+    assert (UNGUARDED in told) == is_said
+    manifest = json.loads((done.folder / "manifest.json").read_text())
+    assert manifest.get("watchdog") == (watchdog and watchdog._asdict())
+
+
+class Asked(Operator):
+    """At the page, beside a twin in this process (it begins anew) or in one of its own."""
+
+    def __init__(self, begins_anew: bool) -> None:
+        self.begins_anew = begins_anew
+        self.remade: list[Change] = []
+
+    def make(self, change: Change) -> None:
+        raise AssertionError(f"asked for {change.words()}, which was done before")
+
+    def remake(self, change: Change) -> None:
+        self.remade.append(change)
+
+
+@pytest.mark.parametrize("begins_anew", [True, False])
+def test_a_campaign_taken_up_makes_again_what_was_made_where_the_rig_begins_anew_and_nowhere_else(
+    session: Session, begins_anew: bool
+) -> None:
+    session.instruments.operator, session.hand = None, (hand := Asked(begins_anew))
+    made: list[Change] = [Reassemble(0.1), HangWeight(10.0)]
+    session.restore(made, left := Rigging(tau_ext=10.0))
+    assert hand.remade == (made if begins_anew else [])
+    assert session.rigging == left
 
 
 def test_a_fault_is_not_left_while_the_drive_does_not_confirm_that_its_torque_is_off(

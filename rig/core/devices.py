@@ -55,6 +55,19 @@ class DriveReading(NamedTuple):
     fault: str = ""
 
 
+class Watchdog(NamedTuple):
+    """What stops a drive by itself once this program falls silent, in `words`, "" for nothing; whether it was seen at
+    work or read back."""
+
+    words: str = ""
+    is_proven: bool = False
+
+
+UNGUARDED = (
+    "nothing stops the drive when this program dies: it has no watchdog that this program could set or was told of"
+)
+
+
 class Device(ABC):
     """Anything the bench can open."""
 
@@ -102,6 +115,7 @@ class TorqueSensor(Device):
 class Drive(Device):
     """The servo drive with its motor encoder."""
 
+    watchdog: Watchdog | None = None  # None of a drive that lives in this program and dies with it
     voltage: bool | None = None  # at its power stage, as it told with the last reading; None: it does not tell
 
     @abstractmethod

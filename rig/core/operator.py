@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -120,8 +120,12 @@ class ClearFault(Change):
 class Operator(ABC):
     """Whoever makes changes by hand."""
 
-    begins_anew: ClassVar[bool] = False  # each time it is connected the rig is as made: a twin within the process
+    begins_anew: bool = False  # each time it is connected the rig is as made: a twin within the process
 
     @abstractmethod
     def make(self, change: Change) -> None:
         """Have it done; returns when it is said to be done. Raises NotReady when it cannot be."""
+
+    def remake(self, change: Change) -> None:
+        """Do once more, where the rig begins anew, what was shown to be done; nobody is asked. Raises as `make`."""
+        self.make(change)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rig.bench import Bench
-from rig.core.devices import Identity
+from rig.core.devices import UNGUARDED, Identity, Watchdog
 from rig.core.errors import HdrigError
 from rig.doctor.finding import Finding, Health
 
 
 def check_devices(bench: Bench) -> list[Finding]:
-    """Connect, identify, read once, let go."""
+    """Connect, identify, let go."""
     instruments = bench.open("virtual" if bench.simulated else "wall")
     try:
         identities = instruments.connect()
@@ -19,10 +19,9 @@ def check_devices(bench: Bench) -> list[Finding]:
         return [Finding("devices", Health.BAD, "; ".join(filter(None, (str(why), bench.twin_not_there))))]
     found = identified(identities)
     found += [Finding(device.name, Health.DOUBTFUL, told) for device in instruments.devices for told in device.remarks]
-    guarded = getattr(instruments.drive, "guarded", None)
+    if instruments.drive.watchdog is not None:
+        found.append(_watchdog(instruments.drive.watchdog))
     instruments.close()
-    if guarded is not None:
-        found.append(_watchdog(guarded))
     return found
 
 
@@ -43,11 +42,6 @@ def identified(identities: Mapping[str, Identity]) -> list[Finding]:
     ]
 
 
-def _watchdog(guarded: str) -> Finding:
-    if guarded:
-        proven = Health.DOUBTFUL if "proves nothing" in guarded else Health.GOOD
-        return Finding("drive's watchdog", proven, guarded)
-    told = (
-        "nothing stops the drive when this program dies: it has no watchdog that this program could set or was told of"
-    )
-    return Finding("drive's watchdog", Health.DOUBTFUL, told)
+def _watchdog(watchdog: Watchdog) -> Finding:
+    health = Health.GOOD if watchdog.is_proven else Health.DOUBTFUL
+    return Finding("drive's watchdog", health, watchdog.words or UNGUARDED)

@@ -8,9 +8,8 @@ from pathlib import Path
 from rig.runfile.events import EventLog
 from rig.session.behind import Behind
 from rig.session.observer import Observer
-from rig.supervisor import Act, State
+from rig.supervisor import KEEP_CLEAR, Act, State
 
-CLEAR = "keep clear of it"  # said of a rig that holds torque or turns on: it is ready for nothing
 KINDS = {Act.TRIP: "trip", Act.HOLD: "operator", Act.STOP: "operator", Act.HALT: "operator"}
 
 
@@ -35,7 +34,7 @@ class SessionLog:
         """The supervisor's change of state, as an event."""
         text = f"{state}: {why}" if why else str(state)
         if act is Act.HALT:  # "ready" in front of a halt would be understood by nobody
-            ready = "" if CLEAR in why else f", the rig is {state} for another run"
+            ready = "" if KEEP_CLEAR in why else f", the rig is {state} for another run"
             text = f"{why}; the drive confirms it{ready}"
         self.event(KINDS.get(act, "state"), text)
 

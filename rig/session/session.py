@@ -12,6 +12,7 @@ from typing import Any
 from rig.bench import Bench, ClockName
 from rig.changes import judge_tare, refuse_turning, wait_for_rest
 from rig.control.filter import SpeedFilter
+from rig.core.devices import UNGUARDED
 from rig.core.errors import Ended, HdrigError, NotReady
 from rig.core.operator import Change, ClearFault, Operator, Rigging
 from rig.core.procedure import Procedure
@@ -65,6 +66,8 @@ class Session:
         for device in self.instruments.devices:
             for remark in device.remarks:
                 self.log.event("note", remark)
+        if self.unguarded:
+            self.log.event("note", UNGUARDED)
         self.supervisor.act(Act.CONNECT)
         if self.simulated and not self.bench.simulated:
             self.observer.simulated(self.bench.file.name)
@@ -80,6 +83,12 @@ class Session:
     def simulated(self) -> bool:
         """The bench is the twin, or a device says that it is the twin's, over whatever wire."""
         return self.bench.simulated or any(identity.simulated for identity in self.identities.values())
+
+    @property
+    def unguarded(self) -> bool:
+        """Whether the drive would go on with its last torque should this program die."""
+        watchdog = self.instruments.drive.watchdog
+        return watchdog is not None and not watchdog.words
 
     def check(self, procedure: Procedure) -> None:
         """The bench can do what the procedure needs, and nothing turns. Raises NotReady: in fault, what is missing or
@@ -175,9 +184,10 @@ class Session:
 
     def restore(self, made: list[Change], rigging: Rigging) -> None:
         """Take up a rig that was left as `rigging`; on a twin, which begins anew, what was `made` is made again."""
-        if self.instruments.operator is not None and self.instruments.operator.begins_anew:
+        operator = self.instruments.operator or self.hand
+        if operator is not None and operator.begins_anew:
             for change in made:
-                self.instruments.operator.make(change)
+                operator.remake(change)
                 self.come_to_rest()
         self.rigging = rigging
 

@@ -17,7 +17,6 @@ from rig.campaign.resume import take_up
 from rig.campaign.run import Desk, conduct
 from rig.campaign.steps import Item
 from rig.campaign.sweeps import plan_named
-from rig.changes import wait_for_rest
 from rig.core.errors import DataError, Exit, NotReady
 from rig.runfile.folder import create, create_in
 from rig.runfile.manifest import told
@@ -88,11 +87,6 @@ def _resumed(station: Station, session: Session, folder: Path) -> tuple[Journal,
     refuse_other_campaign(journal, campaign)
     for line in take_up(journal):
         station.teller.say("said", line)
-    hand = getattr(session.hand, "hand", None)
-    if hand is not None:  # the twin begins anew: what was made is made again
-        for change in journal.made:
-            hand.make(change)
-            wait_for_rest(session.instruments)
     return journal, campaign
 
 

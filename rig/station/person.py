@@ -17,7 +17,8 @@ class PagePerson(Operator):
     """Asks the page; where the rig has a `hand` of its own, the twin's, that makes the change once it said yes."""
 
     def __init__(self, teller: Teller, panel: Panel, attend: Callable[[], None], hand: Operator | None) -> None:
-        self._teller, self._panel, self._attend, self.hand = teller, panel, attend, hand
+        self._teller, self._panel, self._attend, self._hand = teller, panel, attend, hand
+        self.begins_anew = hand is not None and hand.begins_anew
         self._answer: bool | None = None
         self.asked: Change | None = None  # last
 
@@ -26,8 +27,13 @@ class PagePerson(Operator):
         self.asked = change
         if not self.ask(change.words(), type(change).__name__):
             raise NotReady(f"the operator could not do this: {change.words()}")
-        if self.hand is not None and not isinstance(change, ClearFault):
-            self.hand.make(change)
+        if not isinstance(change, ClearFault):
+            self.remake(change)
+
+    def remake(self, change: Change) -> None:
+        """By the rig's own hand, if it has one."""
+        if self._hand is not None:
+            self._hand.make(change)
 
     def ask(self, text: str, what: str) -> bool:
         """Yes or no to `text`. Raises as `make`."""

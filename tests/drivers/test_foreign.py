@@ -159,7 +159,7 @@ def test_a_bare_drive_with_fixed_pdos_is_walked_and_commanded_and_nothing_guards
     )
     drive = Cia402(wiring(wire), place("drive"))
     drive.connect()
-    assert drive.guarded == ""  # neither 1016h nor an RPDO timeout
+    assert drive.watchdog.words == ""  # neither 1016h nor an RPDO timeout
     drive.enable()
     assert foreign.objects[0x6041, 0] == b"\x27\0"
     assert foreign.objects[0x6060, 0] == b"\x0a"

@@ -233,10 +233,10 @@ def test_a_drive_that_does_nothing_when_its_host_falls_silent_is_told_to_fault_o
     silent.value = 0
     w.instruments.connect()
     assert silent.number == 1
-    assert w.instruments.drive.guarded.startswith("heartbeat consumer")
+    assert w.instruments.drive.watchdog.words.startswith("heartbeat consumer")
     w = wired()
     silent = w.twin.drive.objects.find(0x6007, 0)
     silent.value, silent.writable = 0, False
     w.instruments.connect()
-    assert w.instruments.drive.guarded == ""
+    assert w.instruments.drive.watchdog.words == ""
     assert any("when this program falls silent" in remark for remark in w.instruments.drive.remarks)

@@ -129,7 +129,7 @@ def test_an_uncalibrated_axis_does_not_enable_and_is_left_idle():
 
 def test_when_the_host_falls_silent_the_declared_watchdog_stops_the_axis():
     w = connected()
-    assert w.instruments.drive.guarded == "watchdog of the axis, 150 ms, seen to expire"
+    assert w.instruments.drive.watchdog.words == "watchdog of the axis, 150 ms, seen to expire"
     w.instruments.drive.enable()
     for _ in range(100):
         w.instruments.latch()
@@ -145,14 +145,14 @@ def test_when_the_host_falls_silent_the_declared_watchdog_stops_the_axis():
 
 def test_without_a_declared_watchdog_nothing_guards_and_it_is_said():
     w = odriven(Settings(heartbeat=0.02))
-    w.instruments.drive._watchdog = None
+    w.instruments.drive._declared = None
     w.instruments.connect()
-    assert w.instruments.drive.guarded == ""
+    assert w.instruments.drive.watchdog.words == ""
 
 
 def test_a_watchdog_that_is_declared_and_not_set_is_found_out():
     w = connected(Settings(heartbeat=0.02))
-    assert "proves nothing" in w.instruments.drive.guarded
+    assert "proves nothing" in w.instruments.drive.watchdog.words
 
 
 @pytest.mark.slow

@@ -187,7 +187,7 @@ def test_when_the_host_falls_silent_the_drive_stops_by_itself():
     assert w.twin.drive.drive_state is DriveState.OPERATION_ENABLED
     w.wire.wait_until(w.wire.now() + 0.3)
     assert w.twin.drive.drive_state is DriveState.FAULT
-    assert w.instruments.drive.guarded == "heartbeat consumer of the drive, 150 ms, set and read back"
+    assert w.instruments.drive.watchdog.words == "heartbeat consumer of the drive, 150 ms, set and read back"
 
 
 @pytest.mark.parametrize("command", ["80 01", "02 01"])
@@ -225,4 +225,4 @@ def test_a_watchdog_nobody_has_set_is_longer_than_what_the_guard_allows(stale: s
     w = wired(f"limits.stale_s={stale}", "devices.drive.watchdog=0.9")
     del w.instruments.drive.place.options["watchdog"]
     w.instruments.connect()
-    assert told in w.instruments.drive.guarded
+    assert told in w.instruments.drive.watchdog.words

@@ -75,7 +75,7 @@ def test_a_drive_on_the_library_s_stack_is_connected_enabled_commanded_and_made_
     assert driver.read().counts == -123
     told = " ".join(driver.remarks)
     assert "tells no rated torque (6076h): 3 N·m is trusted" in told
-    assert driver.guarded == "", "no 1016h, no 1400h:5: nothing stops it when this program dies"
+    assert driver.watchdog.words == "", "no 1016h, no 1400h:5: nothing stops it when this program dies"
     driver.enable()
     assert peer.number(0x6041) == 0x27
     assert peer.number(0x6060) == 10

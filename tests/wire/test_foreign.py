@@ -217,7 +217,7 @@ def test_an_emergency_of_the_start_that_was_taken_back_is_no_trouble_and_one_tha
 def test_a_bare_drive_is_walked_and_commanded_whatever_it_says_of_what_it_lacks(aborts: int) -> None:
     drive, node = meet(Cia402, DRIVE, tpdos=STATUS, rpdos=COMMAND, ways=Ways(aborts=aborts))
     drive.connect()
-    assert drive.guarded == "RPDO timeout of the drive, 100 ms, set and read back"  # it has 1400h:5, and no 1016h
+    assert drive.watchdog.words == "RPDO timeout of the drive, 100 ms, set and read back"  # no 1016h
     assert "6076h" in told(drive)
     drive.enable()
     assert node.objects[0x6041, 0] == b"\x27\0"
@@ -243,7 +243,7 @@ def test_a_drive_without_anything_that_guards_it_says_so() -> None:
     drive, node = meet(Cia402, DRIVE, tpdos=STATUS, rpdos=COMMAND)
     del node.objects[0x1400, 5]
     drive.connect()
-    assert drive.guarded == ""
+    assert drive.watchdog.words == ""
 
 
 def test_a_mode_that_can_be_written_and_not_read_is_confirmed_by_6061h() -> None:

@@ -41,7 +41,7 @@ from rig.loop import Ending
 from rig.runfile.manifest import utc_now
 from rig.session.done import Watch
 from rig.session.observer import Begun, Observer
-from rig.supervisor import PRESS, UNCONFIRMED
+from rig.supervisor import PRESS
 from rig.timing.ticks import LoopTiming
 
 NOW = (
@@ -117,7 +117,7 @@ class Show(Observer):
         """From the session: torque is off."""
         self.energised = False
         self.tell("ended", folder=str(folder), status=ending.status, reason=ending.reason, exit=int(ending.exit))
-        if UNCONFIRMED in ending.reason:
+        if not ending.confirmed:
             self.say(NOW)
 
 
