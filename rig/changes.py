@@ -21,7 +21,7 @@ LOCKED, FREE = 0.25, 0.5  # share of the motor's turn that the load follows: bel
 WOUND_UP = 0.5  # share of the asked angle the motor must have turned for the check to say anything
 WINDOW = 0.2  # s
 QUIET = 3  # windows in a row
-STILL = 0.01  # rad/s of the motor: 3 counts of a 10 000 line encoder in a window
+STILL = 0.01  # rad/s of the motor: 3 counts of an encoder with 10 000 counts a turn, in a window
 PATIENCE = 30.0  # s from torque off to rest
 COASTS = 5.0  # s in which any motor that nothing drives has come to rest
 

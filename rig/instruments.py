@@ -19,7 +19,7 @@ FROZEN = 1.0  # s of the very same torque: noise alone would have changed it
 STALE_M, STALE_L, STALE_TAU = int(Flag.STALE_M), int(Flag.STALE_L), int(Flag.STALE_TAU)
 FROZEN_TAU = int(Flag.FROZEN_TAU)  # plain integers: one operation on an enum costs as much as a whole reading
 new = tuple.__new__  # half the cost of a NamedTuple's own constructor, paid every tick
-GLANCE = 0.05  # s between two looks that tell a turning motor: a count of a 2000 line encoder is 0.06 rad/s in it
+GLANCE = 0.05  # s between two looks that tell a turning motor: one count of 2000 a turn is 0.06 rad/s in it
 TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
 ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
 

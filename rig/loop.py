@@ -87,6 +87,7 @@ class Loop:
         self.away = (NEVER, 0.0)  # when this program last came back late, and how late [s]
         self.longest = (NEVER, 0.0)  # the same, of the longest time it was away of late
         self.rows = 0  # handed to the sink so far
+        self.confirmed = True  # by the drive: that its torque is off, when the run was over
 
     def run(self, procedure: Procedure, setting: Setting) -> Ending:
         """Enable, tick until an end, disable. Raises HdrigError (a refusal by the procedure or of a drive that says its
@@ -115,9 +116,9 @@ class Loop:
             self._warn(error)
             raise
         finally:
-            confirmed = self.instruments.safe()
+            self.confirmed = self.instruments.safe()
             self.timing.offsets = self.instruments.told()
-        return self._leave(ending, confirmed)
+        return self._leave(ending)
 
     def _energised(self, procedure: Procedure, setting: Setting) -> Ending:
         try:
@@ -333,8 +334,8 @@ class Loop:
         broken = f" ({self.instruments.broken})" if self.instruments.broken else ""
         return f"{why}; {UNCONFIRMED}{broken}"
 
-    def _leave(self, ending: Ending, confirmed: bool) -> Ending:
-        if not confirmed:
+    def _leave(self, ending: Ending) -> Ending:
+        if not self.confirmed:
             why = self._unconfirmed(ending.reason)
             self.supervisor.act(Act.TRIP, why)
             return Ending("tripped", why, Exit.TRIPPED, ending.finding, confirmed=False)

@@ -5,7 +5,7 @@
 from rig.bench.assignments import override, toml_value
 from rig.bench.bench import Bench, ClockName
 from rig.bench.devices import ROLES, device_class
-from rig.bench.reading import BENCHES, read
+from rig.bench.reading import BENCHES, read, shipped
 from rig.bench.twin import twin_parameters
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "device_class",
     "override",
     "read",
+    "shipped",
     "toml_value",
     "twin_parameters",
 ]

@@ -17,14 +17,18 @@ from rig.core.nearest import nearest
 BENCHES = Path(__file__).parents[1] / "benches"  # benches that ship with hdrig
 
 
+def shipped() -> list[str]:
+    """Names of the benches that ship."""
+    return sorted(path.stem for path in BENCHES.glob("*.toml"))
+
+
 def read(source: str, overrides: Iterable[str] = ()) -> Bench:
     """The bench called `source` (a file, or the name of one that ships), with `key=value` overrides.
 
     Raises UsageError: no such bench, an override that fits nothing, a key or value that is wrong.
     """
     path = Path(source) if source.endswith(".toml") or "/" in source else BENCHES / f"{source}.toml"
-    if path.parent == BENCHES and source not in {p.stem for p in BENCHES.glob("*.toml")}:
-        known = [p.stem for p in BENCHES.glob("*.toml")]
+    if path.parent == BENCHES and source not in (known := shipped()):
         raise UsageError(f"no bench called '{source}'; {nearest(source, known)}; or give the path of a .toml file")
     text = load_text(path)
     assignments, blamed = list(overrides), str(path)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 
+from rig.commands.options import bench_argument
 from rig.core.errors import Exit
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig doctor`."""
-    parser.add_argument("--bench", default="twin", metavar="FILE", help="bench file, or the name of one that ships")
+    bench_argument(parser)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a number of it")
 
 

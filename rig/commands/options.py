@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from rig.bench import Bench, ClockName, read, toml_value
+from rig.bench import Bench, ClockName, read, shipped, toml_value
 from rig.campaign.preview import plan_lines as plan_lines  # for the verbs that dry-run
 from rig.core.errors import UsageError
 from rig.core.procedure import Procedure
@@ -15,16 +15,27 @@ from rig.parameters.read import make
 
 def bench_arguments(parser: argparse.ArgumentParser) -> None:
     """--bench, --set, --seed, --clock, --out, --note."""
-    parser.add_argument("--bench", default="twin", metavar="FILE", help="bench file, or the name of one that ships")
+    bench_argument(parser)
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="change a number of the bench file for this run"
     )
     seed_argument(parser, help="seed of the twin, short for --set twin.seed=N")
     parser.add_argument(
-        "--clock", choices=["virtual", "wall"], help="virtual: as fast as it goes (twin only); wall: real time"
+        "--clock",
+        choices=["virtual", "wall"],
+        help="virtual: as fast as it goes, the default on the twin, and for it alone; wall: real time",
     )
-    parser.add_argument("-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go")
+    parser.add_argument(
+        "-o", "--out", type=Path, default=Path("runs"), metavar="FOLDER", help="where run folders go; default: runs"
+    )
     parser.add_argument("--note", default="", metavar="TEXT", help="kept in the run's manifest")
+
+
+def bench_argument(parser: argparse.ArgumentParser, default: str | None = "twin") -> None:
+    """--bench; without a `default` it has to be given."""
+    names = f"bench file, or the name of one that ships ({', '.join(shipped())}: all SIMULATED)"
+    told = names if default is None else f"{names}; default: {default}"
+    parser.add_argument("--bench", default=default, required=default is None, metavar="FILE", help=told)
 
 
 def seed_argument(parser: argparse.ArgumentParser, **how: Any) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from rig.commands.options import bench_argument
 from rig.core.errors import Exit, NotReady
 
 NO_VOLTAGE = (
@@ -15,7 +16,7 @@ NO_VOLTAGE = (
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig reset`."""
-    parser.add_argument("--bench", required=True, metavar="FILE", help="bench file, or the name of one that ships")
+    bench_argument(parser, default=None)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a number of it")
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, ClassVar, NamedTuple
 
-from rig.control.brake import brake
+from rig.control.brake import PATIENCE, brake
 from rig.control.pid import Pid
 from rig.control.profile import Ramp
 from rig.control.spin import ACCELERATION, EASE
@@ -22,7 +22,6 @@ MOVED = 0.5 * DEG  # rad of the motor, 14 counts of 10 000: presliding of a gear
 RATE = 0.2  # N·m/s, of the ramp to breakaway: 10 ms from breaking loose to having moved are 2 mN·m
 SHARE = 0.4  # of the drive's torque limit, most that breakaway may take
 PAUSE = 0.5  # s without torque after it
-END = 2.0  # s at the end for the brake
 
 
 class Rubbed(NamedTuple):
@@ -86,7 +85,7 @@ class Friction(Procedure):
             travel += ramp.travel + ramp.end * seconds
             far = max(far, abs(travel))
         nudge = 2 * self.breakaways * (SHARE * setting.control.torque_limit / RATE + PAUSE)
-        duration = nudge + sum(ramp.duration + seconds for ramp, seconds in stairs) + END
+        duration = nudge + sum(ramp.duration + seconds for ramp, seconds in stairs) + PATIENCE
         fastest = max(self.speeds) * RPM
         reserve = f"the fastest of speeds_rpm = {self.speeds_rpm}, and 10 % that the loop may overshoot"
         return Envelope(duration, far + TURN, fastest * 1.1, setting.control.torque_limit, reserve=reserve)

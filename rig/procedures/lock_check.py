@@ -13,8 +13,9 @@ from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque
 from rig.core.units import DEG
+from rig.procedures.stiffness_lock import OVERSHOOT_BY
 
-OVERSHOOT = 2.0  # of the wind-up, and 3 N·m: stick-slip, or a gear that was wound up before
+OVERSHOOT = 2.0  # of the wind-up, and OVERSHOOT_BY: stick-slip, or a gear that was wound up before
 
 
 class LockProof(NamedTuple):
@@ -51,7 +52,7 @@ class LockCheck(Procedure):
         """The guard keeps the wind-up small, by the shaft torque and by the following error."""
         duration = 2 * self.move.duration + 3 * self.hold
         wound = setting.stiffness * self.angle_deg * DEG / setting.ratio
-        shaft = OVERSHOOT * wound + 3.0 if wound > 0 else math.inf  # NaN: no stiffness declared
+        shaft = OVERSHOOT * wound + OVERSHOOT_BY if wound > 0 else math.inf  # NaN: no stiffness declared
         torque = setting.control.torque_limit
         return Envelope(duration, self.angle_deg * DEG, self.move.speed, torque, shaft_torque=shaft)
 

@@ -14,11 +14,11 @@ from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Torque
 from rig.core.units import DEG, TURN
 from rig.procedures.nudge import REST, nudge
+from rig.procedures.stiffness_lock import OVERSHOOT_BY
 
 NUDGE_RATE = 1.0  # N·m/s
 NUDGE_DEG = 5.0  # deg of the motor that count as moved: 0.1° of a locked output, 12.5 N·m at 7160 N·m/rad
 OVERSHOOT = 1.5  # of what is expected at the shaft: kinematic error, stick-slip, a nudge that runs on
-OVERSHOOT_BY = 3.0  # N·m, and so much more
 
 
 @dataclass(frozen=True)

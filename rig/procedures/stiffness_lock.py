@@ -16,7 +16,7 @@ from rig.core.units import DEG
 SOFTEST = 3.0  # times the declared compliance: a gear that winds up farther is not the one of the bench file
 GIVES_WAY = 0.15  # of the wind-up at tau_max: a load that moved this far is not locked
 OVERSHOOT = 1.3  # of tau_max: a slip may end beyond it by what stick-slip is long
-OVERSHOOT_BY = 3.0  # N·m, and so much more
+OVERSHOOT_BY = 3.0  # N·m, and so much more, whatever the torque: what a slip of a motor that sticks may add
 PATIENCE = 3.0  # times what unwinding should take: a gear that still shows torque then is let go, and it is said
 SLIP = 2.5  # N·m that the last slip of the motor may leave in the shaft
 LITTLE = 1.0  # N·m: to turn the motor for less would only slip to the other side

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from rig.core.errors import NotReady
 from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
-from rig.procedures.stiffness_lock import SLIP, StiffnessLock
+from rig.procedures.stiffness_lock import PATIENCE, SLIP, StiffnessLock
 
 MOST = 45.0  # N·m a locked gear may hold: friction of the motor times N, and the sensors of such rigs end at 50 N·m
 
@@ -31,7 +31,7 @@ class Unwind(Procedure):
     def envelope(self, setting: Setting) -> Envelope:
         """For the most a gear may hold; it ends as soon as nothing is left."""
         wind_up = setting.ratio * MOST / setting.stiffness
-        duration = 3 * MOST / self.rate + 2.0  # three times what it should take, as the lock test allows itself
+        duration = PATIENCE * MOST / self.rate + 2.0  # as the lock test allows itself, and 2 s to spare
         return Envelope(duration, 2 * wind_up, wind_up * self.rate / MOST, setting.control.torque_limit)
 
     def conditions(self) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from rig.core.ring import Ring
 from rig.runfile.columns import columns_of_rows
 from rig.runfile.journal import JournalWriter
 
-POLL = 0.02  # s between looks at the ring; with FLUSH it bounds what a kill can lose: 0.22 s of the 0.5 s promised
+POLL = 0.02  # s between looks at the ring; with FLUSH 0.22 s, for which rows are in shared memory alone
 FLUSH = 0.2  # s between batches handed to the operating system
 SYNC = 0.8  # s between syncs to disk; with POLL and the sync itself it stays within the 1 s a power cut may cost
 SHARE = 4  # a faster producer is followed by ring fill: a batch, and a sync, for each quarter of the ring

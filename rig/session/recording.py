@@ -45,7 +45,8 @@ class Recording:
         Raises Ended when rows are lost, and what the loop raises once the drive is safe.
         """
         recorder: Recorder | None = None
-        ending, problem, rows = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), "", 0
+        ending, problem = Ending("interrupted", "an internal error ended the run", Exit.INTERNAL), ""
+        rows, confirmed = 0, True
         failed: HdrigError | None = None
         try:
             recorder = Recorder(folder, self.instruments.clock, interrupted=lambda: self.interrupts.count > 0)
@@ -54,9 +55,10 @@ class Recording:
             try:
                 ending = loop.run(procedure, self._setting)
             finally:
-                rows = loop.rows
+                rows, confirmed = loop.rows, loop.confirmed
         except HdrigError as error:
-            ending = Ending("tripped" if error.exit is Exit.TRIPPED else "stopped", str(error), error.exit)
+            status = "tripped" if error.exit is Exit.TRIPPED else "stopped"
+            ending = Ending(status, str(error), error.exit, confirmed=confirmed)
             failed = error
             raise
         finally:

@@ -7,15 +7,16 @@ import numpy as np
 from rig.analysis.at_speed.decomposition import Decomposition, decompose, slow_profile
 from rig.analysis.findings.collected import Findings
 from rig.analysis.findings.intervals import amplitude_interval
-from rig.analysis.findings.result import Array, Check, Estimate
+from rig.analysis.findings.result import Check, Estimate
+from rig.analysis.findings.unbiased import phasor_draws, unbiased
 from rig.analysis.kinematic_error.measure import KinematicError, groups_by_speed, measure
 from rig.analysis.kinematic_error.profile import DRAWS
 from rig.analysis.motion.source import Motion, Source, motion_of
 from rig.analysis.motion.strokes import find_strokes
 from rig.analysis.motion.tame import Tame
 from rig.analysis.motion.window import measured_window, part
-from rig.analysis.orders.align import Complex
 from rig.analysis.orders.revolutions import GRID
+from rig.analysis.orders.wave import wave
 from rig.core.quantiles import Z95
 from rig.core.units import DEG
 
@@ -85,9 +86,9 @@ def _figures(found: Findings, split: Decomposition, basis: str) -> None:
     predicted = split.predicted
     found.curve(
         decomposition__theta_deg=theta,
-        decomposition__total=_wave(split.total),
-        decomposition__pure=_wave(split.pure),
-        decomposition__flexible=_wave(split.flexible),
+        decomposition__total=wave(split.total),
+        decomposition__pure=wave(split.pure),
+        decomposition__flexible=wave(split.flexible),
         decomposition__order=np.arange(1.0, split.total.size + 1),
         decomposition__measured=np.array([row["flexible"] for row in rows], float),
         decomposition__low=np.array([row["flexible_lo"] for row in rows], float),
@@ -98,18 +99,11 @@ def _figures(found: Findings, split: Decomposition, basis: str) -> None:
 
 def peak_to_peak(split: Decomposition) -> tuple[float, float, float]:
     """(value, low, high) of θ̃_s over one turn, arcsec; the upward bias by noise is taken off."""
-    plain = float(np.ptp(_wave(split.flexible)))
-    rng = np.random.default_rng(0)  # the same file gives the same interval
-    noise = rng.standard_normal((DRAWS, split.u.size)) + 1j * rng.standard_normal((DRAWS, split.u.size))
-    sizes = np.array([np.ptp(_wave(split.flexible + split.u * draw)) for draw in noise])
-    value = max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0)
-    half = split.factor * float(sizes.std())
+    noise = phasor_draws(DRAWS, split.u.size)
+    sizes = np.array([np.ptp(wave(split.flexible + split.u * draw)) for draw in noise])
+    value, scatter = unbiased(float(np.ptp(wave(split.flexible))), sizes)
+    half = split.factor * scatter
     return value, max(value - half, 0.0), value + half
-
-
-def _wave(phasor: Complex) -> Array:
-    angle = np.multiply.outer((np.arange(GRID) + 0.5) / GRID * 2.0 * np.pi, np.arange(1.0, phasor.size + 1))
-    return np.asarray(np.cos(angle) @ phasor.real - np.sin(angle) @ phasor.imag)
 
 
 def _row(split: Decomposition, i: int) -> dict[str, float | str]:

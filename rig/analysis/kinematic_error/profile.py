@@ -8,6 +8,7 @@ import numpy as np
 
 from rig.analysis.findings.intervals import inflation, neighbour_correlation, rms_of_pieces, t95
 from rig.analysis.findings.result import Array
+from rig.analysis.findings.unbiased import unbiased
 from rig.analysis.orders.align import Complex
 from rig.analysis.orders.revolutions import GRID, StrokeResult, filled
 from rig.core.quantiles import Z95
@@ -96,8 +97,8 @@ class Profile:
         draws = best + np.random.default_rng(0).standard_normal((DRAWS, best.size)) * spread  # same file, same interval
         sizes = np.ptp(draws @ basis.T, axis=1)
         plain = float(np.ptp(basis @ best))
-        value = max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0)
-        half = float(np.hypot(self.factor * sizes.std(), self.system_half))
+        value, scatter = unbiased(plain, sizes)
+        half = float(np.hypot(self.factor * scatter, self.system_half))
         return value, (max(value - half, 0.0), value + half)
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from enum import StrEnum
 
 from rig.analysis.findings.result import Array
+from rig.analysis.orders.wave import wave
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Number
-from rig.analysis.reproduction.shaft import Complex, wave
+from rig.analysis.reproduction.shaft import Complex
 from rig.analysis.reproduction.split import THETA_DEG, Split, share
 
 MOST = 90.0  # % of the mean square: nine tenths, an rms of a third left

@@ -9,13 +9,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from rig.analysis.orders.wave import wave
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, all_of, missing, positive
 from rig.analysis.reproduction.comparison import Shown, compared, model_words
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.analysis.reproduction.figure_7 import explained
 from rig.analysis.reproduction.load_effect import UnderLoad, under_load, why_worse
-from rig.analysis.reproduction.shaft import wave
 from rig.analysis.reproduction.split import Split, peak_to_peak, rms, split_of, words
 from rig.model.linear import natural_frequency
 

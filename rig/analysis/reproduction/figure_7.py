@@ -6,11 +6,11 @@ import math
 
 from rig.analysis.kinematic_error.measure import KinematicError
 from rig.analysis.kinematic_error.profile import phasors
+from rig.analysis.orders.wave import wave
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, Ruling, at_least, at_most, missing, positive
 from rig.analysis.reproduction.comparison import MOST, Shown, compared, drawn, explains, model_words
 from rig.analysis.reproduction.exhibit import Exhibit
-from rig.analysis.reproduction.shaft import wave
 from rig.analysis.reproduction.split import (
     Split,
     bending,

@@ -13,6 +13,7 @@ from rig.analysis.motion.source import Motion
 from rig.analysis.motion.strokes import find_strokes
 from rig.analysis.orders.revolutions import TERMS
 from rig.analysis.orders.sums import harmonics
+from rig.analysis.orders.wave import wave
 
 Complex = npt.NDArray[np.complex128]
 
@@ -53,9 +54,3 @@ def _orders(theta: Array, tau: Array, terms: int) -> Complex:
     columns = np.concatenate((np.ones((1, theta.size)), harmonics(theta, terms)))
     found = np.linalg.lstsq(columns.T, tau, rcond=None)[0]
     return np.asarray(found[1 : 1 + terms] - 1j * found[1 + terms :])
-
-
-def wave(phasor: Complex, points: int = 512) -> Array:
-    """Re Σ z_n·exp(jnθ) in the middle of `points` equal parts of a turn, orders from 1 on."""
-    angle = np.multiply.outer((np.arange(points) + 0.5) / points * 2.0 * np.pi, np.arange(1.0, phasor.size + 1))
-    return np.asarray(np.cos(angle) @ phasor.real - np.sin(angle) @ phasor.imag)

@@ -9,14 +9,16 @@ import numpy as np
 
 from rig.analysis.at_speed.decomposition import Decomposition, decompose
 from rig.analysis.findings.result import Array
+from rig.analysis.findings.unbiased import phasor_draws, unbiased
 from rig.analysis.kinematic_error.measure import KinematicError
 from rig.analysis.kinematic_error.profile import DRAWS, Profile
 from rig.analysis.orders.revolutions import GRID
+from rig.analysis.orders.wave import wave
 from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Number
 from rig.analysis.reproduction.model import Model
 from rig.analysis.reproduction.reading import Reading
-from rig.analysis.reproduction.shaft import Complex, Shaft, wave
+from rig.analysis.reproduction.shaft import Complex, Shaft
 from rig.core.units import ARCSEC, RPM
 from rig.model.gear import Gear
 from rig.model.simulate import NoSteadyState, at_speed
@@ -107,11 +109,9 @@ def swing(phasor: Complex, u: Array, factor: float) -> Number:
 
 
 def _drawn(size: Callable[[Complex], float], phasor: Complex, u: Array, factor: float, unit: str) -> Number:
-    plain, rng = size(phasor), np.random.default_rng(0)  # the same campaign gives the same interval
-    noise = rng.standard_normal((DRAWS, u.size)) + 1j * rng.standard_normal((DRAWS, u.size))
-    sizes = np.array([size(phasor + u * draw) for draw in noise])
-    value = max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0)
-    half = factor * float(sizes.std())
+    sizes = np.array([size(phasor + u * draw) for draw in phasor_draws(DRAWS, u.size)])
+    value, scatter = unbiased(size(phasor), sizes)
+    half = factor * scatter
     return Number(value, max(value - half, 0.0), value + half, unit)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.findings.result import Array
+from rig.analysis.findings.unbiased import phasor_draws, unbiased
 from rig.core.quantiles import Z95
 from rig.core.units import TURN
 
@@ -87,14 +88,13 @@ def _greatest_less_least(lines: Complex, noise: Array, bins: int) -> tuple[float
     """Of the curve that the `lines` make, freed of bias, and half its 95 % interval, arcsec."""
     at = np.flatnonzero(lines)
     flat = np.sinc(at / bins)  # what averaging over a piece takes from each line
-    rng = np.random.default_rng(0)  # the same run gives the same interval
 
     def size(values: Complex) -> float:
         spectrum = np.zeros(FINER * bins // 2 + 1, dtype=np.complex128)
         spectrum[at] = FINER * values / flat
         return float(np.ptp(np.fft.irfft(spectrum, FINER * bins)))
 
-    plain = size(lines[at])
-    draws = rng.standard_normal((DRAWS, at.size)) + 1j * rng.standard_normal((DRAWS, at.size))
-    sizes = np.array([size(lines[at] + np.sqrt(0.5 * MARGIN * noise[at]) * draw) for draw in draws])
-    return max(plain - max(float(sizes.mean()) - plain, 0.0), 0.0), Z95 * float(sizes.std())
+    scatter = np.sqrt(0.5 * MARGIN * noise[at])
+    sizes = np.array([size(lines[at] + scatter * draw) for draw in phasor_draws(DRAWS, at.size)])
+    value, sigma = unbiased(size(lines[at]), sizes)
+    return value, Z95 * sigma

@@ -27,7 +27,7 @@ class Heard:
 def test_a_lost_bus_tells_to_press_the_hard_wired_stop(confirmed: bool) -> None:
     heard: Any = Heard()
     reason = "CAN bus 'rig' is lost" + ("" if confirmed else f"; {UNCONFIRMED}")
-    Show(heard).ended(Path("run"), Ending("tripped", reason, Exit.TRIPPED))
+    Show(heard).ended(Path("run"), Ending("tripped", reason, Exit.TRIPPED, confirmed=confirmed))
     said = [event["text"] for event in heard.events if event["event"] == "said"]
     assert [text.startswith("Press the hard-wired stop, there may be torque still") for text in said] == (
         [] if confirmed else [True]
