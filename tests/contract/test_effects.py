@@ -294,6 +294,15 @@ def test_friction_by_load_of_hundreds_is_none():
         assert effect.plausible(Fit(np.array([size]), shape, np.zeros((4, 4)), KNOWN, N)) is possible
 
 
+@pytest.mark.parametrize(
+    ("t_w", "law", "possible"), [(12.0, 1.0, False), (12.0, 0.0, False), (90.0, 1.0, True), (12.0, 3.0, True)]
+)
+def test_no_drive_warms_and_cools_within_seconds(t_w: float, law: float, possible: bool):
+    """What begins anew in every run (exam 101, case 30) is no warmth; of a logged temperature the number is kelvins."""
+    fit = Fit(np.array([0.04, 0.0005]), (t_w, law, 1e-3), np.zeros((5, 5)), KNOWN, N)
+    assert CATALOGUE["thermal_friction_drift"].plausible(fit) is possible
+
+
 def test_lines_that_are_seen_are_tried_with_their_neighbours():
     tried = CATALOGUE["encoder_interpolation_error"].shapes(dataclasses.replace(REACH, counts_m=0.0, lines_m=(128,)))
     assert {(0.0, n) for n in (127.0, 128.0, 129.0, 255.0, 257.0)} == {shape for shape in tried if shape[0] == 0.0}

@@ -49,6 +49,7 @@ class ThermalFrictionDrift(Effect):
     shape_names: ClassVar[tuple[str, ...]] = ("t_w", "law", "beta")
     loose: ClassVar[tuple[bool, ...]] = (True, False, True)
     TIMES: Final = (120.0, 300.0, 700.0, 1600.0, 4000.0)  # s; a gear box of this size warms in 5 to 40 min
+    FASTEST: Final = 30.0  # s, by which the body that friction itself heats, an oil film and its race, may warm
     LEAKS: Final = (300.0, 1200.0, 4000.0)  # s
     TWICE: Final = 2.0  # times a time constant: one that is known worse may be any
     AT: Final = 10.0  # rad/s
@@ -87,8 +88,11 @@ class ThermalFrictionDrift(Effect):
         return {Port.MOTOR_TORQUE: np.stack([signals.way * warmed, signals.omega_m * warmed], 1)}
 
     def plausible(self, fit: Fit) -> bool:
-        """A cold drive has more friction, at an ordinary speed at least."""
-        return bool(fit.coefficients[0] + self.AT * fit.coefficients[1] > 0)
+        """A cold drive has more friction, at an ordinary speed at least, and no drive warms or cools within seconds:
+        what begins anew in every run is no warmth."""
+        t_w, law, _ = fit.shape
+        slow = law == LOGGED or t_w > self.FASTEST
+        return bool(slow and fit.coefficients[0] + self.AT * fit.coefficients[1] > 0)
 
     def is_scaled(self, scale: Parameter, reach: Reach) -> bool:
         """Also where it may go on for most of what was measured, or longer: then it is nearly a straight line, or a

@@ -11,6 +11,7 @@ from scipy.signal import lfilter
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.floor import steps
 from rig.analysis.tracing.floor.jumps import EDGE, FAR, among, heights, jumps
+from rig.analysis.tracing.floor.kept import kept
 from rig.analysis.tracing.floor.steps import Steps, _rested, _sure, explained, lost_counts
 from rig.analysis.tracing.floor.vibration import _as_one, _heights
 from rig.analysis.tracing.runs.holdout import HELD_PART
@@ -136,24 +137,71 @@ def test_the_height_of_a_jump_is_taken_from_all_that_is_flat_beside_it_and_has_a
     assert heights(np.r_[0.0, 0.0, 1.0, 1.0], (2,)) == [(1.0, 0.0)]
 
 
-def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(
-    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    count, e = 6e-6, {(i, "A"): 4e-6 * rng.standard_normal(4000) for i in range(3)}
-    e[0, "A"][2500:] += 3 * count
-    wander = 5e-6 * np.sin(np.arange(4000) / 250)
-    e[1, "A"] += wander
-    e[1, "A"][1500:] += 2 * count
+@pytest.fixture
+def plainly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Jumps of one channel alone, of motors that go on one way."""
     for name in ("_onward", "_onward_rippling"):
         monkeypatch.setattr(steps, name, lambda eq, key: np.ones(4000, dtype=bool))
     monkeypatch.setattr(steps, "_of_the_torque", lambda *of: False)
     monkeypatch.setattr(steps, "_lasts", lambda *of: True)
     monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))
     monkeypatch.setattr(steps, "_in_other_parts", lambda *of: {})
-    eq: Any = None
-    found = steps.find_steps(eq, e)
+
+
+def one_way(runs: int) -> Any:
+    """Equations of runs whose motors do."""
+    return SimpleNamespace(rows={(i, "A"): SimpleNamespace(theta_m=np.arange(4000.0)) for i in range(runs)})
+
+
+@pytest.mark.usefixtures("plainly")
+def test_beside_a_certain_loss_of_three_counts_one_of_two_is_found(rng: np.random.Generator) -> None:
+    count, e = 6e-6, {(i, "A"): 4e-6 * rng.standard_normal(4000) for i in range(3)}
+    e[0, "A"][2500:] += 3 * count
+    wander = 5e-6 * np.sin(np.arange(4000) / 250)
+    e[1, "A"] += wander
+    e[1, "A"][1500:] += 2 * count
+    found = steps.find_steps(one_way(3), e)
     assert {run: len(rows) for run, rows in found.rows.items()} == {0: 1, 1: 1}
     assert found.rows[1][0] == pytest.approx(1500, abs=4)
+
+
+@pytest.mark.usefixtures("plainly")
+def test_groups_of_counts_of_many_sizes_are_all_found(rng: np.random.Generator) -> None:
+    count, e = 5e-6, {(i, "A"): 1e-6 * rng.standard_normal(4000) for i in range(3)}
+    lost = {0: {900: 5, 3100: -3}, 1: {1400: 6, 2600: 4}, 2: {2000: 10}}
+    for run, at in lost.items():
+        for row, counts in at.items():
+            e[run, "A"][row:] += counts * count
+    found = steps.find_steps(one_way(3), e)
+    for run, at in lost.items():
+        assert found.rows[run] == pytest.approx(tuple(at), abs=4)
+        assert found.sizes[run] == pytest.approx([n * count for n in at.values()], rel=0.05)
+
+
+UP_DOWN_UP = np.concatenate([np.linspace(0, 25, 1500), np.linspace(25, -25, 3000), np.linspace(-25, 0, 1500)])
+TURNED_BACK, ONCE_MORE = 1500, 4500
+
+
+@pytest.mark.parametrize(
+    ("rises", "falls", "is_kept"),
+    [
+        (TURNED_BACK + 50, 6000, True),
+        (TURNED_BACK + 50, ONCE_MORE + 50, False),  # what has play goes back over it
+        (ONCE_MORE + 50, 6000, False),  # nothing turned back after it
+        (3000, 6000, False),  # on the way, where every jump is looked for anyhow
+    ],
+)
+def test_a_jump_at_a_reversal_is_lost_counts_where_the_next_does_not_undo_it(
+    rng: np.random.Generator, rises: int, falls: int, is_kept: bool
+) -> None:
+    e = 1e-6 * rng.standard_normal(6000)
+    e[rises:falls] += 2.5e-5
+    e[2200:] -= 4e-5  # known by now
+    found = kept(e, UP_DOWN_UP, [(2200, -4e-5)])
+    assert len(found) == is_kept
+    for row, size in found:
+        assert row == pytest.approx(rises, abs=4)
+        assert size == pytest.approx(2.5e-5, rel=0.1)
 
 
 @pytest.mark.parametrize(("shown", "left"), [(True, []), (False, [0, 1])])
@@ -169,8 +217,7 @@ def test_in_a_lock_test_jumps_are_what_they_are_where_the_torque_tells(
     monkeypatch.setattr(steps, "_lasts", lambda *of: True)
     monkeypatch.setattr(steps, "_placed", lambda eq, e, run, row: (row, LOAD))
     monkeypatch.setattr(steps, "_in_other_parts", lambda *of: {})
-    eq: Any = None
-    assert sorted(steps.find_steps(eq, e).rows) == left
+    assert sorted(steps.find_steps(one_way(2), e).rows) == left
 
 
 def test_the_jump_of_a_run_is_in_its_other_parts_too(rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch) -> None:

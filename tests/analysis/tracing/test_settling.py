@@ -64,5 +64,5 @@ def test_a_drag_that_sets_in_anew_in_every_run_is_the_motors_and_told_by_one_num
     (home,) = settled(at(time, e, way=way, fast=fast), "M")
     assert (home.coordinate, home.first) == ("time", True)
     assert home.share > 0.9
-    assert "as a drag that sets in with a time constant near 8 s" in of_the_rest(home, 4.0)
+    assert "as a drag that settles with a time constant near 8 s" in of_the_rest(home, 4.0)
     assert all("sets in" not in home.said for home in settled(at(time, e, way=way, fast=fast), "L"))

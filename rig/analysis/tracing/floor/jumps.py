@@ -80,6 +80,11 @@ def one_of_size(e: Array, rows: Sequence[int], size: float) -> tuple[int, float]
     return (int(at[top]), float(apart[top])) if ONE < apart[top] / size < 1 / ONE else None
 
 
+def without(e: Array, known: Sequence[tuple[int, float]]) -> Array:
+    """What is left of `e` (n,) without jumps of it that are known by now, rows and sizes [rad]."""
+    return e - sum((size * (np.arange(e.size) >= row) for row, size in known), np.zeros(e.size))
+
+
 def heights(e: Array, rows: Sequence[int]) -> list[tuple[float, float]]:
     """How far what is before each of `rows` of `e` (n,) is from what is after it [rad], as far as LONG or the next, and
     the standard error of it. Where a jump is largest some noise is in its size: that window is not the measure."""

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
-from rig.analysis.tracing.floor.jumps import EDGE, FAR, ONE, WINDOW, Mask, among, heights, jumps, one_of_size
+from rig.analysis.tracing.floor.jumps import EDGE, FAR, ONE, WINDOW, Mask, among, heights, jumps, one_of_size, without
+from rig.analysis.tracing.floor.kept import kept
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.runs.alike import alike
 from rig.analysis.tracing.runs.holdout import whole_run
@@ -31,7 +32,7 @@ OF_MEDIAN = 1.25  # standard error of a median over that of a mean, √(π/2)
 AT_ONCE = 0.1  # s since the start: two repeats that jump so near each other jump because of what they do then
 AT_LEAST = 0.5  # of all there is, or of what is taken, the excess that is believed
 FEWER = 0.5  # of the smallest of a few jumps that are certain, another may be: two counts beside three, and noise
-MANY = 4  # jumps of one size that are certain: a jump at a reversal may then be another of them
+MANY = 4  # jumps that are certain: where all are of one size, a jump at a reversal may be another of them
 
 
 @dataclass(frozen=True)
@@ -69,16 +70,19 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     sure = [abs(size) for key in keys for _, size in _sure(e[key], onward[key])]
     # once it is known how many counts are lost at a time, smaller evidence of the same loss will do
     usual = float(np.median(sure)) if sure else 0.0
-    least = ONE * usual if len(sure) >= MANY else FEWER * min(sure, default=0.0)
+    of_one_size = len(sure) >= MANY and min(sure) > ONE * usual  # groups of counts may be lost as well
+    least = ONE * usual if of_one_size else FEWER * min(sure, default=0.0)
     rows: dict[int, tuple[int, ...]] = {}
     sizes: dict[int, tuple[float, ...]] = {}
     of_the_torque = 0
     for key in keys if sure else []:
-        where = onward[key] if len(sure) < MANY else onward[key] | _for_good(e[key], usual)
+        where = onward[key] | _for_good(e[key], usual) if of_one_size else onward[key]
         again = (e[key], where, STEP_AGAIN, (least, max(1.35 * usual, 1.1 * max(sure))))
         found = jumps(*again) or jumps(*again, window=FAR)
-        if len(sure) >= MANY:
+        if of_one_size:
             found = among(e[key], onward[key], found, usual)
+        elif found:
+            found = sorted([*found, *kept(e[key], eq.rows[key].theta_m, found)])
         seen = len(found)
         found = [(at, size) for at, size in found if not _of_the_torque(eq, e, key, at, size, compliance)]
         of_the_torque += seen - len(found)
@@ -130,14 +134,9 @@ def _in_other_parts(
             known = [*zip(rows.get(other, ()), sizes.get(other, ()), strict=True), *out.get(other, ())]
             if any(first - EDGE <= there <= last + EDGE for there, _ in known):
                 continue
-            if found := one_of_size(_without(e[other, "A"], known), range(first, last + 1), size):
+            if found := one_of_size(without(e[other, "A"], known), range(first, last + 1), size):
                 out.setdefault(other, []).append(found)
     return out
-
-
-def _without(e: Array, known: Sequence[tuple[int, float]]) -> Array:
-    """What is left of a run (n,) without jumps of it that are known by now."""
-    return e - sum((size * (np.arange(e.size) >= row) for row, size in known), np.zeros(e.size))
 
 
 def _lasts(eq: Equations, e: Mapping[Key, Array], key: Key, found: Sequence[tuple[int, float]]) -> bool:
@@ -289,11 +288,13 @@ def _at(eq: Equations, run: int, rows: Sequence[int]) -> tuple[Array, Array]:
 
 def _at_one_angle(eq: Equations, steps: Steps, per_turn: float) -> bool:
     """Whether the jumps lie nearer together on a shaft that turns once in `per_turn` turns of the motor than chance
-    does once in a hundred times (Rayleigh's test), and not because the runs saw no more of that shaft."""
+    does once in a hundred times (Rayleigh's test, about the mean of what the runs saw of it), and not because they saw
+    no more of that shaft."""
     thetas = [eq.rows[run, "A"].theta_m for run in steps.rows]
     jumps = np.concatenate([theta[list(rows)] for theta, rows in zip(thetas, steps.rows.values(), strict=True)])
-    seen, found = (float(abs(np.mean(np.exp(1j * x / per_turn)))) for x in (np.concatenate(thetas), jumps))
-    return seen < SEEN_ROUND and jumps.size * found**2 > ONE_ANGLE
+    seen, found = (np.mean(np.exp(1j * x / per_turn)) for x in (np.concatenate(thetas), jumps))
+    apart = abs(found - seen) ** 2 / (1.0 - min(abs(seen) ** 2, SEEN_ROUND))
+    return bool(abs(seen) < SEEN_ROUND and jumps.size * apart > ONE_ANGLE)
 
 
 def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:

@@ -45,7 +45,7 @@ def _laws(channel: str) -> Iterator[Law]:
         for moment in MOMENTS.tolist() if channel in "ML" else ():
             yield partial(_is_there, moment, sense), f"from about {moment:.2g} s on"
     for power, tau in itertools.product(POWERS if channel == "M" else (), CONSTANTS):
-        yield partial(_sets_in, tau, power), f"as a drag that sets in with a time constant near {tau:.2g} s"
+        yield partial(_sets_in, tau, power), f"as a drag that settles with a time constant near {tau:.2g} s"
 
 
 def _falls(tau: float, sense: Callable[[Rest], Array], r: Rest) -> Array:
