@@ -15,7 +15,8 @@ from rig.commands.show.at_the_rig import at_the_keys
 from rig.commands.show.words import wired_twin
 from rig.commands.targets import refuse_unwritable
 from rig.core.errors import Exit, UsageError
-from rig.evaluation.identification import TERMS, gear_of
+from rig.evaluation.identification import gear_of
+from rig.model.fourier import PAPER_ORDERS
 from rig.runfile.manifest import utc_now
 from rig.session import Session
 
@@ -88,7 +89,7 @@ def _gear(args: argparse.Namespace) -> GearFile:
     """Raises UsageError: no gear file, or one without a kinematic error; DataError when nothing can be identified."""
     from rig.model import gearfile
 
-    found = gearfile.read(args.gear) if args.gear else gear_of(expand([args.campaign]), TERMS, say)
+    found = gearfile.read(args.gear) if args.gear else gear_of(expand([args.campaign]), PAPER_ORDERS, say)
     if not found.kinematic_error.series.a:
         raise UsageError("the gear file holds no kinematic error; identify the gear from slow runs first")
     return found

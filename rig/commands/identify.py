@@ -9,7 +9,8 @@ from pathlib import Path
 from rig.commands.folders import expand, runs_argument
 from rig.commands.targets import refuse_taken
 from rig.core.errors import UsageError
-from rig.evaluation.identification import TERMS, identify
+from rig.evaluation.identification import identify
+from rig.model.fourier import PAPER_ORDERS
 
 MOST_TERMS = 40  # a row rate of 1 kHz shows no more at the usual speeds
 
@@ -18,7 +19,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig identify`."""
     runs_argument(parser)
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="gear file to write, for example gear.toml")
-    parser.add_argument("--terms", type=int, default=TERMS, metavar="K", help=f"orders of θ̃_p, default {TERMS}")
+    parser.add_argument(
+        "--terms", type=int, default=PAPER_ORDERS, metavar="K", help=f"orders of θ̃_p, default {PAPER_ORDERS}"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

@@ -36,7 +36,8 @@ class UsageError(HdrigError):
 
 
 class NotReady(HdrigError):
-    """The rig is not in the state this act needs. Nothing was moved."""
+    """The rig is not in the state this act needs. Before a run nothing was moved; within one the torque
+    is taken off."""
 
     exit = Exit.NOT_READY
 

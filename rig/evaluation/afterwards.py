@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 from rig.campaign.journal import read_journal
 from rig.core.errors import Exit, UsageError
-from rig.evaluation.identification import TERMS, identify
+from rig.evaluation.identification import identify
 from rig.evaluation.run import exit_of
 from rig.evaluation.sweep import Sweep, assembly_sweep_of, load_sweep_of
 from rig.evaluation.to_identify import Say
+from rig.model.fourier import PAPER_ORDERS
 from rig.runfile.listing import runs_in
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def to_gear_file(folder: Path, say: Say) -> Followed:
     out = folder / GEAR
     if out.exists():
         raise UsageError(f"{out} exists already; give the name of a new file")
-    found = identify(runs_in(folder), TERMS, say)
+    found = identify(runs_in(folder), PAPER_ORDERS, say)
     gearfile.write(out, found.file)
     return Followed([*found.lines(), f"gear file {out}"], found.exit)
 

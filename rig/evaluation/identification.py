@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from rig.model.gearfile import Covered, GearFile, Parameter
     from rig.runfile.run import Run
 
-TERMS = 15  # orders of the paper's series
-
 
 @dataclass(frozen=True)
 class Identification:

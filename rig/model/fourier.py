@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 BLOCK: Final = 4096  # angles
+PAPER_ORDERS: Final = 15  # of the motor, in the paper's series      [ghorbel2001, Eq. 8]
 
 
 @dataclass(frozen=True)

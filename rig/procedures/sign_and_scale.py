@@ -8,16 +8,16 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
-from rig.control.pid import Pid
 from rig.control.profile import Trapezoid
 from rig.core.errors import NotReady
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
-from rig.core.sample import Sample, Setpoint, Torque
-from rig.core.units import DEG, RPM, TURN
+from rig.core.sample import Sample, Setpoint
+from rig.core.units import DEG, TURN
 from rig.procedures.nudge import nudge, refuse_held
+from rig.procedures.one_turn import BLOCKS, DWELL, leg, one_turn, standard_error
 
 RATIO_TOLERANCE = 0.01  # of the declared ratio: a wrong scale is off by far more
-BLOCKS = 8  # stretches of the turn whose mean shaft torques tell how sure their mean is
+TO_SPARE = 2.0  # s, for the nudge to end in
 STEADY = 0.1  # of the nominal speed: a motor that nearly stops leaves any torque in the shaft
 SIGMAS = 5.0  # a torque difference counts as seen beyond this many standard errors
 
@@ -63,15 +63,15 @@ class SignAndScale(Procedure):
     @property
     def turn(self) -> Trapezoid:
         """One motor turn."""
-        speed = self.speed_rpm * RPM
-        return Trapezoid(TURN, speed, speed / 0.3)
+        return one_turn(self.speed_rpm)
 
     def envelope(self, setting: Setting) -> Envelope:
         """The load need not follow: whether it does is the question."""
         limit = setting.control.torque_limit
         nudge = self.nudge_share * limit / self.nudge_rate
         torque = max(1.0, self.nudge_share) * limit  # beyond the limit it is refused
-        return Envelope(nudge + 2 * self.turn.duration + 3.0, 1.5 * TURN, self.turn.speed, torque, coupled=False)
+        duration = nudge + 2 * (self.turn.duration + DWELL) + TO_SPARE
+        return Envelope(duration, 1.5 * TURN, self.turn.speed, torque, coupled=False)
 
     def conditions(self) -> dict[str, object]:
         """For the manifest."""
@@ -88,21 +88,17 @@ class SignAndScale(Procedure):
 
     def _leg(self, setting: Setting, direction: int) -> Generator[Setpoint, Sample, Leg]:
         """One turn under the position loop; the shaft torque is averaged in the middle half, at constant speed."""
-        pid, move = Pid(setting.control, setting.period), self.turn
-        sample = yield Torque(0.0)
-        first, begin = sample, sample.t
-        sums, counts, slowest = [0.0] * BLOCKS, [0] * BLOCKS, 1.0
-        while (t := sample.t - begin) < move.duration + 0.5:
-            offset, omega = move.at(t)
-            block = int((t / move.duration - 0.25) * 2 * BLOCKS)
-            if 0 <= block < BLOCKS:
-                sums[block], counts[block] = sums[block] + sample.tau_l, counts[block] + 1
-                slowest = min(slowest, direction * sample.omega_m / move.speed)
-            theta_ref, omega_ref = first.theta_m + direction * offset, direction * omega
-            tau = pid.step(theta_ref, omega_ref, sample.theta_m, sample.omega_m)
-            sample = yield Torque(tau, theta_ref, omega_ref)
-        means = tuple(total / n for total, n in zip(sums, counts, strict=True))
-        return Leg(sample.theta_m - first.theta_m, sample.theta_l - first.theta_l, means, slowest)
+        move, slowest = self.turn, 1.0
+        torques: list[list[float]] = [[] for _ in range(BLOCKS)]
+
+        def take(block: int, sample: Sample) -> None:
+            nonlocal slowest
+            torques[block].append(sample.tau_l)
+            slowest = min(slowest, direction * sample.omega_m / move.speed)
+
+        first, last = yield from leg(setting, move, direction, take)
+        means = tuple(statistics.fmean(part) for part in torques)
+        return Leg(last.theta_m - first.theta_m, last.theta_l - first.theta_l, means, slowest)
 
 
 def judge(forward: Leg, reverse: Leg, breakaway: float, setting: Setting) -> Proof:
@@ -121,9 +117,7 @@ def judge(forward: Leg, reverse: Leg, breakaway: float, setting: Setting) -> Pro
             "check N and both counts_per_turn"
         )
     difference = statistics.fmean(forward.shaft_torque) - statistics.fmean(reverse.shaft_torque)
-    # from the scatter of whole stretches: friction and stick-slip make neighbouring samples anything but independent
-    spread = statistics.pvariance(forward.shaft_torque) + statistics.pvariance(reverse.shaft_torque)
-    error = math.sqrt(spread / (BLOCKS - 1))
+    error = standard_error(forward.shaft_torque, reverse.shaft_torque)
     steady = min(forward.slowest, reverse.slowest) > STEADY
     if steady and difference < -SIGMAS * error:
         raise NotReady(

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import math
 import statistics
 from collections.abc import Generator
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
-from rig.control.pid import Pid
 from rig.control.profile import Trapezoid
 from rig.core.errors import NotReady
 from rig.core.kinds import Regime
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint, Torque
-from rig.core.units import RPM, TURN
+from rig.core.units import TURN
+from rig.procedures.one_turn import BLOCKS, DWELL, leg, one_turn, standard_error
 
 STANDSTILL = 0.5  # s, 500 readings at 1 kHz
-BLOCKS = 8  # stretches whose means tell how sure the mean is
 
 
 class Leg(NamedTuple):
@@ -63,12 +61,11 @@ class Weigh(Procedure):
     @property
     def turn(self) -> Trapezoid:
         """One motor turn, so that the kinematic error averages out."""
-        speed = self.speed_rpm * RPM
-        return Trapezoid(TURN, speed, speed / 0.3)
+        return one_turn(self.speed_rpm)
 
     def envelope(self, setting: Setting) -> Envelope:
         """One turn out and back."""
-        duration = STANDSTILL + 2 * (self.turn.duration + 0.5)
+        duration = STANDSTILL + 2 * (self.turn.duration + DWELL)
         return Envelope(duration, TURN, self.turn.speed, setting.control.torque_limit)
 
     def conditions(self) -> dict[str, object]:
@@ -102,18 +99,8 @@ class Weigh(Procedure):
 
     def _leg(self, setting: Setting, direction: int) -> Generator[Setpoint, Sample, Leg]:
         """One turn under the position loop, read at constant speed."""
-        pid, move = Pid(setting.control, setting.period), self.turn
-        sample = yield Torque(0.0)
-        home, begin = sample.theta_m, sample.t
         blocks: list[list[Sample]] = [[] for _ in range(BLOCKS)]
-        while (t := sample.t - begin) < move.duration + 0.5:
-            offset, omega = move.at(t)
-            block = int((t / move.duration - 0.25) * 2 * BLOCKS)
-            if 0 <= block < BLOCKS:
-                blocks[block].append(sample)
-            theta_ref, omega_ref = home + direction * offset, direction * omega
-            tau = pid.step(theta_ref, omega_ref, sample.theta_m, sample.omega_m)
-            sample = yield Torque(tau, theta_ref, omega_ref)
+        yield from leg(setting, self.turn, direction, lambda block, sample: blocks[block].append(sample))
         shaft = [statistics.fmean(s.tau_l for s in samples) for samples in blocks]
         return Leg(shaft, [statistics.fmean(s.tau_m for s in samples) for samples in blocks])
 
@@ -123,7 +110,7 @@ def weighing(standstill: float, forward: Leg, reverse: Leg) -> Weighing:
     ahead, back = statistics.fmean(forward.shaft), statistics.fmean(reverse.shaft)
     drag = (statistics.fmean(forward.motor) - statistics.fmean(reverse.motor)) / 2
     torque, friction = (ahead + back) / 2, (ahead - back) / 2
-    error = math.sqrt((statistics.pvariance(forward.shaft) + statistics.pvariance(reverse.shaft)) / (BLOCKS - 1)) / 2
+    error = standard_error(forward.shaft, reverse.shaft) / 2
     sentence = (
         f"torque sensor {standstill:+.2f} N·m at standstill, {torque:+.3f} ± {2 * error:.3f} N·m over both directions, "
         f"friction {friction:.2f} N·m on the load side, {drag:.3f} N·m at the motor"

@@ -23,6 +23,7 @@ from rig.analysis.turning.run import add_turning
 from rig.core.numbers import number
 from rig.core.quantiles import Z95
 from rig.core.units import RPM, TURN
+from rig.model.fourier import PAPER_ORDERS
 from rig.model.linear import held_frequency, natural_frequency
 
 TOLERANCE = 0.02  # of the waveform's rms, where the run does not say
@@ -30,7 +31,6 @@ ORDER2 = 0.01  # of C_2: how little it may change to the next slower speed
 REPEATS = 2.0  # times its own uncertainty: a change below that is none
 FEWEST = 3  # speeds
 LAW = 0.03  # 1 σ of what damping and the loop's give shift the fitted frequency by, relative
-HIGHEST = 15  # order of the paper's series that the prediction is made for      [ghorbel2001, Eq. 8]
 
 
 def add_speed_convergence(found: Findings, run: Source, motion: Motion) -> None:
@@ -195,9 +195,11 @@ def _prediction(
         )
     )
     if best is not None:
-        share = 100.0 * (HIGHEST * steps[best].omega_m / free) ** 2
-        how = f"(15Ω/ω_n)² with ω_n = {free / TURN:.2f} Hz from the declared J_m, J_l and K."
-        found.exact("highest_order_predicted", f"Growth of order {HIGHEST} at that speed, by theory", share, "%", how)
+        share = 100.0 * (PAPER_ORDERS * steps[best].omega_m / free) ** 2
+        how = f"({PAPER_ORDERS}Ω/ω_n)² with ω_n = {free / TURN:.2f} Hz from the declared J_m, J_l and K."
+        found.exact(
+            "highest_order_predicted", f"Growth of order {PAPER_ORDERS} at that speed, by theory", share, "%", how
+        )
 
 
 def _table(found: Findings, law: Law, steps: list[SpeedStep], tolerance: float) -> None:

@@ -17,10 +17,9 @@ from rig.analysis.identify.solve import Solved
 from rig.analysis.kinematic_error.ratio import disagreement
 from rig.analysis.motion.degrees import turning_of
 from rig.analysis.motion.source import Motion, Source
-from rig.analysis.orders.revolutions import TERMS
 from rig.analysis.turning.units import unlikely_torque
 from rig.core.units import RPM
-from rig.model.fourier import FourierSeries
+from rig.model.fourier import PAPER_ORDERS, FourierSeries
 
 WARMED = 0.03  # of friction, rising against falling: more and the lubricant changed during the run
 HELD = 0.1  # of a speed: a plateau farther off is another one
@@ -82,9 +81,9 @@ def _in_another_unit(run: Source, motion: Motion) -> str:
 
 def _series(rec: Recording) -> FourierSeries:
     """θ̃_p from the run's own slow plateaus: it levers the shaft torque at the motor. Zeros where there are none."""
-    slow = slow_series(rec, TERMS)
-    c = np.zeros(2 * TERMS) if slow is None else slow.coefficients
-    return FourierSeries(tuple(map(float, c[:TERMS])), tuple(map(float, c[TERMS:])))
+    slow = slow_series(rec, PAPER_ORDERS)
+    c = np.zeros(2 * PAPER_ORDERS) if slow is None else slow.coefficients
+    return FourierSeries(tuple(map(float, c[:PAPER_ORDERS])), tuple(map(float, c[PAPER_ORDERS:])))
 
 
 def _lines(found: Findings, f: MotorFriction, prefix: str, where: str, of: str) -> None:

@@ -13,8 +13,9 @@ from rig.analysis.kinematic_error.trend import Trend, find_trend
 from rig.analysis.motion.declared import declared
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.strokes import Stroke
-from rig.analysis.orders.revolutions import ROWS_PER_TERM, TERMS, StrokeResult, analyse_stroke
+from rig.analysis.orders.revolutions import ROWS_PER_TERM, StrokeResult, analyse_stroke
 from rig.core.units import RPM, TURN
+from rig.model.fourier import PAPER_ORDERS
 
 SAME_SPEED = 1.15  # strokes whose speeds differ by less are averaged together
 
@@ -38,7 +39,7 @@ def measure(run: Source, motion: Motion, strokes: list[Stroke], slow: bool) -> K
     `slow`: the figures stand for the pure kinematic error, so what inertia adds belongs into their uncertainty.
     """
     rows = min(int(np.min(np.diff(s.edges))) for s in strokes)
-    terms = min(TERMS, rows // ROWS_PER_TERM)
+    terms = min(PAPER_ORDERS, rows // ROWS_PER_TERM)
     if terms < 1:
         return None
     results = [analyse_stroke(motion, s, terms) for s in strokes]

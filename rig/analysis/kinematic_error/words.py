@@ -10,9 +10,10 @@ from rig.analysis.findings.intervals import amplitude_interval
 from rig.analysis.findings.result import Array, Check, Estimate, Part
 from rig.analysis.kinematic_error.measure import KinematicError
 from rig.analysis.kinematic_error.profile import SMALL, Profile, chosen_terms, truncation
-from rig.analysis.orders.revolutions import GRID, TERMS
+from rig.analysis.orders.revolutions import GRID
 from rig.core.quantiles import Z95
 from rig.core.units import DEG
+from rig.model.fourier import PAPER_ORDERS
 
 CURVES = 400  # revolutions drawn at most
 TRIFLE = 0.01  # of the peak to peak: with so much left, orders that no figure has move it by a few times as much
@@ -207,9 +208,9 @@ def cut_short(found: Findings, ke: KinematicError) -> str:
     """Why the peak to peak is no whole one where the rows are too few per turn for all orders; "" where it is, or what
     is left of the rows is a trifle."""
     p = ke.profile
-    if p.terms >= TERMS:
+    if p.terms >= PAPER_ORDERS:
         return ""
-    said = f"The rows are too few per turn for {TERMS} orders: the series ends at order {p.terms}."
+    said = f"The rows are too few per turn for {PAPER_ORDERS} orders: the series ends at order {p.terms}."
     found.cannot.append(said)
     whole, (rms, _) = p.peak_to_peak()[0], p.residual_rms
     if rms < TRIFLE * whole:

@@ -14,7 +14,6 @@ from rig.analysis.motion.strokes import Stroke
 from rig.analysis.orders.sums import BLOCK, Sums, harmonics, legendre
 from rig.core.units import TURN
 
-TERMS = 15  # orders of the paper's series      [ghorbel2001, Eq. 8]
 GRID = 512  # points per motor turn of the curves
 ROWS_PER_TERM = 4  # rows a revolution must have for each order: twice what Nyquist asks, the rows are not evenly spaced
 

@@ -12,8 +12,8 @@ from rig.analysis.reproduction.campaign import Campaign
 from rig.analysis.reproduction.claim import Claim, Number, at_most, missing
 from rig.analysis.reproduction.exhibit import Exhibit
 from rig.analysis.reproduction.split import words
+from rig.model.fourier import PAPER_ORDERS
 
-TERMS = 15  # of the paper's series      [ghorbel2001, Eq. 8]
 UP_TO = 30  # terms drawn: twice as many show whether the curve has levelled off
 LEFT = 0.01  # of the mean square: a tenth of the amplitude, what the paper's figure can show
 TITLE = "Mean square error of the Fourier series"
@@ -32,7 +32,7 @@ def figure(campaign: Campaign) -> Exhibit:
     mse = truncation(error.profile.pure(), UP_TO)
     curves = {
         "mse.k": np.arange(1.0, mse.size), "mse.value": mse[1:],
-        "mse.floor": np.array([error.profile.floor]), "mse.chosen": np.array([float(TERMS)]),
+        "mse.floor": np.array([error.profile.floor]), "mse.chosen": np.array([float(PAPER_ORDERS)]),
     }  # fmt: skip
     how = f"{words(reading, error)}; the floor is what the scatter of single turns leaves in their mean."
     return Exhibit("Figure 6", TITLE, PAPER, how, (suffices(turns(error)),), "convergence", curves)
@@ -60,5 +60,5 @@ def suffices(revolutions: Array) -> Claim:
 
 
 def _left(curve: Array) -> float:
-    mse = truncation(curve - curve.mean(), TERMS)
-    return float(mse[TERMS] / mse[0])
+    mse = truncation(curve - curve.mean(), PAPER_ORDERS)
+    return float(mse[PAPER_ORDERS] / mse[0])

@@ -10,11 +10,11 @@ from rig.analysis.identify.fit import fit
 from rig.analysis.identify.identified import Identified, identified
 from rig.analysis.identify.recording import recording
 from rig.core.errors import DataError
+from rig.model.fourier import PAPER_ORDERS
 from rig.model.gear import Gear
 from rig.model.gearfile import MeasuredSeries, Parameter
 from rig.runfile.run import Run
 
-TERMS = 15  # of the paper's series      [ghorbel2001, Eq. 8]
 NEEDED = ("J_m", "J_l", "K")  # what the motion at speed hangs on
 
 
@@ -50,7 +50,7 @@ def _identified(folders: Sequence[Path]) -> Identified:
     recordings = [r for run in runs if (r := recording(run)) is not None]
     if not recordings:
         raise DataError("no run here has time and both angles: nothing to identify from")
-    return identified(fit(recordings, TERMS), runs[0].manifest)
+    return identified(fit(recordings, PAPER_ORDERS), runs[0].manifest)
 
 
 def _model(found: Identified, folders: Sequence[Path], held_out: bool) -> Model:

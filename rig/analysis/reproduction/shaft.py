@@ -11,9 +11,9 @@ import numpy.typing as npt
 from rig.analysis.findings.result import Array
 from rig.analysis.motion.source import Motion
 from rig.analysis.motion.strokes import find_strokes
-from rig.analysis.orders.revolutions import TERMS
 from rig.analysis.orders.sums import harmonics
 from rig.analysis.orders.wave import wave
+from rig.model.fourier import PAPER_ORDERS
 
 Complex = npt.NDArray[np.complex128]
 
@@ -37,7 +37,7 @@ def shaft_of(motion: Motion, tau_l: Array | None) -> Shaft | None:
         return None
     longest = max(strokes, key=lambda s: s.revolutions)
     pieces = list(pairwise(int(e) for e in longest.edges))
-    terms = min(TERMS, min(b - a for a, b in pieces) // 4)
+    terms = min(PAPER_ORDERS, min(b - a for a, b in pieces) // 4)
     if len(pieces) < 3 or terms < 1:
         return None
     each = np.array([_orders(motion.theta_m[a:b], tau_l[a:b], terms) for a, b in pieces])

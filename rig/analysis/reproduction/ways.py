@@ -11,7 +11,8 @@ import numpy as np
 from rig.analysis.findings.result import Array
 from rig.analysis.motion.source import Motion
 from rig.analysis.motion.strokes import Stroke
-from rig.analysis.orders.revolutions import ROWS_PER_TERM, TERMS, analyse_stroke
+from rig.analysis.orders.revolutions import ROWS_PER_TERM, analyse_stroke
+from rig.model.fourier import PAPER_ORDERS
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ def ways_of(motion: Motion, strokes: list[Stroke], tau_l: Array | None) -> tuple
     """Both directions of `strokes`, those with two revolutions at least; none without a whole shaft torque."""
     if tau_l is None or not np.isfinite(tau_l).all():
         return ()
-    terms = min(TERMS, min(int(np.min(np.diff(s.edges))) for s in strokes) // ROWS_PER_TERM)
+    terms = min(PAPER_ORDERS, min(int(np.min(np.diff(s.edges))) for s in strokes) // ROWS_PER_TERM)
     sides = [[s for s in strokes if s.direction == d] for d in (1, -1)]
     return tuple(_way(motion, side, tau_l, terms) for side in sides if sum(s.revolutions for s in side) > 1)
 

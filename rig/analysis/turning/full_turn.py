@@ -10,10 +10,10 @@ from rig.analysis.findings.result import Array, Estimate, Part
 from rig.analysis.motion.source import Motion, Source
 from rig.analysis.motion.strokes import Stroke, find_strokes
 from rig.analysis.orders.lines import Line, fit_lines
-from rig.analysis.orders.revolutions import TERMS
 from rig.analysis.sensors.in_step import in_step
 from rig.analysis.turning.accuracy import Accuracy, accuracy
 from rig.core.quantiles import Z95
+from rig.model.fourier import PAPER_ORDERS
 
 PAIRS = (1, 2, 4)  # orders of the wave generator whose neighbour in the other part's frame is looked for
 WHERE = {  # what a line may come from; k is of the output, n of the wave generator
@@ -104,7 +104,7 @@ def output_orders(ratio: float, output: str) -> list[tuple[float, str]]:
 def _lines(found: Findings, theta: Array, error: Array, ratio: float, output: str, turns: int) -> None:
     """Amplitudes of the close lines, fitted together with the other whole orders, so that none leaks into another."""
     wanted = output_orders(ratio, output)
-    others = [float(n) for n in range(1, TERMS + 1) if n not in PAIRS]
+    others = [float(n) for n in range(1, PAPER_ORDERS + 1) if n not in PAIRS]
     lines = fit_lines(theta, error, [order for order, _ in wanted] + others)[: len(wanted)]
     rows = [_row(line, ratio, where) for line, (_, where) in zip(lines, wanted, strict=True)]
     found.tables["lines_of_the_turn"] = rows
@@ -112,8 +112,8 @@ def _lines(found: Findings, theta: Array, error: Array, ratio: float, output: st
         order = float(row["order"])
         how = (
             f"Least squares over {turns} whole output {'turn' if turns == 1 else 'turns'} with all whole orders to "
-            f"{TERMS}; a line is {1.0 / (turns * ratio):.3g} orders wide; interval from the noise around it. It may "
-            f"come from: {row['source']}."
+            f"{PAPER_ORDERS}; a line is {1.0 / (turns * ratio):.3g} orders wide; interval from the noise around it. It "
+            f"may come from: {row['source']}."
         )
         state = "" if float(row["lo"]) > 0 else "Not told from zero, only the upper end is a result. "
         ci95 = (float(row["lo"]), float(row["hi"]))

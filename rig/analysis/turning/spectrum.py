@@ -7,9 +7,10 @@ from rig.analysis.findings.result import Array
 from rig.analysis.motion.source import Motion
 from rig.analysis.motion.strokes import Stroke
 from rig.analysis.orders.lines import Line, find_lines, fit_lines, spectrum
-from rig.analysis.orders.revolutions import TERMS, trend_degree
+from rig.analysis.orders.revolutions import trend_degree
 from rig.analysis.orders.sums import fit, legendre, without
 from rig.core.units import DEG
+from rig.model.fourier import PAPER_ORDERS
 
 SPECTRUM_TO = 40.0  # orders of the motor drawn
 LINES_TO = 150.0  # orders searched: tooth mesh of a ratio-50 gear is 102
@@ -29,7 +30,7 @@ def add_orders(found: Findings, motion: Motion, stroke: Stroke) -> None:
     # what the output does in so few of its turns is no line yet, and would leak into all others
     slow = trend_degree(float(stroke.revolutions), stroke.revolutions)
     lines = find_lines(
-        theta, _less_trend(theta, error, slow), LINES_TO, slowest=SLOWEST, known=tuple(range(1, TERMS + 1))
+        theta, _less_trend(theta, error, slow), LINES_TO, slowest=SLOWEST, known=tuple(range(1, PAPER_ORDERS + 1))
     )
     found.tables["lines"] = [_line_row(line, motion.ratio) for line in lines]
     if stroke.revolutions >= motion.ratio - 1:

@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.model.effect import Signals
+from rig.model.fourier import PAPER_ORDERS
 from rig.model.second_mode.shaken import EXCITED
 
 Array = npt.NDArray[np.float64]
 
-ORDERS: Final = 15  # of the motor, as the paper's series has
 FAST: Final = 36.0  # Hz of a mode above which what shakes it is taken from its orders alone
 TURNS: Final = 8  # of the motor over which an order is the same
 STEADY: Final = 0.1  # of the mean speed, how far nine tenths of a piece may vary
@@ -29,7 +29,7 @@ def ordered(s: Signals, x: Array) -> Array:
         return x
     low, high = windows
     speed = float(np.mean(np.abs(s.omega_m)))
-    top = min(ORDERS, int(NYQUIST * 2.0 * np.pi / (s.dt * speed)))
+    top = min(PAPER_ORDERS, int(NYQUIST * 2.0 * np.pi / (s.dt * speed)))
     out = _mean(np.nan_to_num(x), low, high)
     for n in range(1, top + 1):
         wave = np.exp(1j * n * s.theta_m)

@@ -37,14 +37,15 @@ import numpy.typing as npt
 
 from rig.analysis.tracing.fit.holding import holds
 from rig.analysis.tracing.fit.unread_load import beside_load
-from rig.analysis.tracing.runs.answered import HIGHEST, answered, lowest_answered
+from rig.analysis.tracing.runs.answered import answered, lowest_answered
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.resolution import COARSE
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.model.effect import Array, Signals
+from rig.model.fourier import PAPER_ORDERS
 from rig.model.waves import powers
 
-ORDERS: Final = HIGHEST  # terms of θ̃_p      [ghorbel2001, Eq. 8]
+ORDERS: Final = PAPER_ORDERS  # terms of θ̃_p      [ghorbel2001, Eq. 8]
 
 
 class Channel(NamedTuple):

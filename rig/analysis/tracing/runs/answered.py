@@ -17,9 +17,9 @@ from rig.analysis.tracing.runs.declared import UNKNOWN
 from rig.analysis.tracing.runs.recording import Recording
 from rig.core.units import TURN
 from rig.model.effect import Array, Signals
+from rig.model.fourier import PAPER_ORDERS
 from rig.model.waves import powers
 
-HIGHEST: Final = 15  # order of θ̃_p      [ghorbel2001, Eq. 8]
 NEAR: Final = 0.2  # of the resonance: a load swings 4 % further than a stiff one there
 EVEN: Final = 1.3  # of the speed of its slowest quarter, that of its fastest: waves of one size all along
 SECTORS: Final = 12  # of a turn, in all of which a run has to be slow at some time
@@ -42,7 +42,7 @@ def lowest_answered(run: Recording) -> float:
     if not np.isfinite(limit := slow_enough(run)):
         return np.inf
     lowest = np.ceil(limit / max(run.turning, 1e-9)) if run.keeps_speed(EVEN) else KEPT + 1
-    return float(lowest) if lowest <= HIGHEST else np.inf
+    return float(lowest) if lowest <= PAPER_ORDERS else np.inf
 
 
 def told(piece: Signals, run: Recording) -> Array:
@@ -74,5 +74,5 @@ def _slow(piece: Signals, run: Recording) -> Array:
 def answered(run: Recording) -> Array:
     """Waves of those, pieces joined, all rows of M (n, q)."""
     f, lowest = run.smoother.of("M"), lowest_answered(run)
-    waves = np.concatenate([f(powers(piece.theta_m, HIGHEST)) for piece in run.pieces])
-    return waves[:, np.repeat(np.arange(1, HIGHEST + 1) >= lowest, 2)]
+    waves = np.concatenate([f(powers(piece.theta_m, PAPER_ORDERS)) for piece in run.pieces])
+    return waves[:, np.repeat(np.arange(1, PAPER_ORDERS + 1) >= lowest, 2)]
