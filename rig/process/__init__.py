@@ -1,1 +1,2 @@
-"""The process and its operating system: signals, output that may vanish, priority, which software it is."""
+"""The process and its operating system: signals, output that may vanish, priority, which software it is; work that two
+processes share."""

@@ -24,10 +24,10 @@ from rig.analysis.tracing.selection.confounders import CONFOUNDERS, of_the_libra
 from rig.analysis.tracing.selection.further import select_further
 from rig.analysis.tracing.selection.select import select
 from rig.analysis.tracing.selection.selected import Selected
-from rig.analysis.tracing.workers import give_back
 from rig.model.effect import Reach
 from rig.model.effects import CATALOGUE
 from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
+from rig.process.workers import give_back
 
 DRIFT: Final = ThermalFrictionDrift.name
 WARMS: Final = 30.0  # nats, of friction that warms: with less it is not asked for below the floor

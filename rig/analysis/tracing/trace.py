@@ -11,7 +11,7 @@ from rig.analysis.tracing.outcome.report import report
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.searched import searched
-from rig.analysis.tracing.workers import give_back, one_heap
+from rig.process.workers import give_back, one_heap
 
 
 def trace(folder: Path, hold_out: Sequence[str] = (), say: Callable[[str], None] = lambda text: None) -> Trace:

@@ -14,7 +14,7 @@ from rig.analysis.tracing.outcome.each_run import beside_the_numbers
 from rig.analysis.tracing.outcome.free_told import free_told
 from rig.analysis.tracing.outcome.result import Trace
 from rig.analysis.tracing.outcome.told import listed, symbol
-from rig.analysis.tracing.workers import each
+from rig.process.workers import each
 from rig.report import page as run_page
 from rig.report import words as run_words
 from rig.report.figures import Drawing

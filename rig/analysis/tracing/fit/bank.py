@@ -14,9 +14,9 @@ from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.laid import Block, Index, Sheet, Single
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.sliding import settled
-from rig.analysis.tracing.workers import each, give_back
 from rig.model.effect import Array, Effect, Reach
 from rig.model.second_mode.shaken import EXCITED
+from rig.process.workers import each, give_back
 
 ROOM: Final = 2  # columns of a term, more than most have in a channel
 

@@ -12,8 +12,8 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import CHANNELS, Rows, is_measured, rows, shared_columns, unmasked
 from rig.analysis.tracing.fit.footprint import footprint
 from rig.analysis.tracing.runs.recording import Recording
-from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import MEASURED, Array, Effect, Known, Port, Shape
+from rig.process.workers import WORKERS
 
 Key = tuple[int, str]  # run, channel
 FEWEST = 12  # rows of a run in a channel: a brisk lock test that sticks and slips is two dozen readings, and good ones

@@ -13,8 +13,8 @@ from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.thresholds import CLEAR, FAINTEST, NOISE_ALONE
-from rig.analysis.tracing.workers import WORKERS
 from rig.model.effect import Array
+from rig.process.workers import WORKERS
 
 
 @dataclass(frozen=True)

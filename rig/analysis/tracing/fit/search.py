@@ -17,8 +17,8 @@ from rig.analysis.tracing.fit.own_reading import leaves_most
 from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.scan import Drop, Own, cross, drops, own
 from rig.analysis.tracing.thresholds import CLOSEST, EVIDENCE, MOST, NEARLY, RELATIVE, SMALLEST, STILL, STILL_RUN
-from rig.analysis.tracing.workers import each
 from rig.model.effect import Array, Fit, Reach
+from rig.process.workers import each
 
 ROUNDS = 4
 RUNS_AWAY = 1.5  # times what was left before: columns that lean on a little too much are off by less

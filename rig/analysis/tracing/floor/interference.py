@@ -17,10 +17,10 @@ from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.floor.spectrum import on_even_grid
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_WIDE, LOUD_LINE
-from rig.analysis.tracing.workers import each
 from rig.core.units import TURN
 from rig.model.effect import Array
 from rig.model.linear import held_frequency
+from rig.process.workers import each
 
 LOWEST = 0.8  # Hz; below, a run of 10 s cannot tell a line from drift
 WINDOW = 4.0  # s: a quarter of a hertz; what wanders by a tenth in a minute stays inside

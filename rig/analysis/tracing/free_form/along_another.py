@@ -19,7 +19,7 @@ from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.rest.home import Home
 from rig.analysis.tracing.rest.joined import loudness
 from rig.analysis.tracing.thresholds import EVIDENCE, FAR_LESS, PLAIN_ENOUGH
-from rig.analysis.tracing.workers import each
+from rig.process.workers import each
 
 PLAIN: Final = ("motor_angle", "load_angle", "speed", "load", "direction")
 LIKELY: Final = 3  # forms along a coordinate that few rows speak for most

@@ -13,8 +13,8 @@ from rig.analysis.tracing.floor.held_out import HeldOut, left_unseen
 from rig.analysis.tracing.free_form.fitted import Fitted, fitted, likeliest, possible
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.thresholds import EVIDENCE
-from rig.analysis.tracing.workers import each, give_back
 from rig.model.effect import Array
+from rig.process.workers import each, give_back
 
 FINER: Final = (2, 4)  # times as fine as the coarsest, while fitted runs want it
 DOUBLED: Final = 4  # times as many numbers in a form that is a product of two factors, each twice as fine

@@ -16,7 +16,7 @@ from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.free_form.forms import forms
 from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.workers import each
+from rig.process.workers import each
 
 RIDGE: Final = 1e-6  # of a column's square: some are sums of others, and of the baseline's
 SURFACE: Final = 0.9  # of its evidence

@@ -39,8 +39,8 @@ from rig.analysis.tracing.selection.one_sided import COGGING, one_sided
 from rig.analysis.tracing.selection.own_scores import own_scores
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.selection.verdict import decide
-from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array, Parameter
+from rig.process.workers import meanwhile
 
 
 def report(

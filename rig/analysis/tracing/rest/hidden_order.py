@@ -23,8 +23,8 @@ from rig.analysis.tracing.rest.unknown import MOST
 from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER, every_second_turn, ratio_of
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.thresholds import LOUD_LINE
-from rig.analysis.tracing.workers import each
 from rig.model.effect import Array
+from rig.process.workers import each
 
 SOME: Final = 0.5  # of the runs: with fewer that were repeated, neighbouring turns make the floor of most
 PLAIN: Final = LOUD_LINE / 2  # of what is left of the fitted runs, what one half of them must foretell of the other

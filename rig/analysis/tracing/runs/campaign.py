@@ -31,9 +31,9 @@ from rig.analysis.tracing.runs.unfinished import unfinished
 from rig.analysis.tracing.runs.units import faster_by_degrees, odd_angles, refuse_odd_angles
 from rig.analysis.tracing.runs.unweighed import weighed
 from rig.analysis.tracing.runs.weights import other_weights, refuse_odd_torques
-from rig.analysis.tracing.workers import WORKERS
 from rig.core.errors import DataError, Exit, HdrigError, UsageError
 from rig.model.effect import Moved
+from rig.process.workers import WORKERS
 from rig.runfile.copies import once
 from rig.runfile.doubt import changed
 from rig.runfile.manifest import Missing, is_nameless

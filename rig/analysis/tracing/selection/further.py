@@ -25,8 +25,8 @@ from rig.analysis.tracing.selection.instead_of import FRICTIONS, below_zero
 from rig.analysis.tracing.selection.select import select
 from rig.analysis.tracing.selection.selected import Selected
 from rig.analysis.tracing.thresholds import ALIKE, EXPLAINED, KNOWN, LAWS, MISSING, MOSTLY, NAMED, OUTDONE, TRIED, TURNS
-from rig.analysis.tracing.workers import first_that
 from rig.model.effect import Reach
+from rig.process.workers import first_that
 
 
 def select_further(selected: Selected, found: Found, bank: Bank, runs: Sequence[int], covered: Reach) -> Selected:

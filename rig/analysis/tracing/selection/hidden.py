@@ -34,8 +34,8 @@ from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.selection.next_run import along
 from rig.analysis.tracing.selection.sentences import how_often, of_the_rest
 from rig.analysis.tracing.thresholds import IN_ONE_RUN, MISSING, NOTEWORTHY
-from rig.analysis.tracing.workers import meanwhile
 from rig.model.effect import Array
+from rig.process.workers import meanwhile
 
 
 def hidden(p: Prepared, s: Solution, after: Mapping[Key, Array], floors: Mapping[Key, float]) -> Conclusion | None:

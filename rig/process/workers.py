@@ -1,4 +1,4 @@
-"""Work of a trace shared by two processes.
+"""Work of one call shared by two processes.
 
 Columns of one run are some hundred numpy calls of microseconds each: two threads spend half as much again handing the
 interpreter's lock to each other. A forked copy of the process has all that was read already, takes every other piece

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.analysis.tracing import workers
-from rig.analysis.tracing.workers import each, first_that, meanwhile
+from rig.process import workers
+from rig.process.workers import each, first_that, meanwhile
 
 
 @pytest.fixture(autouse=True)
