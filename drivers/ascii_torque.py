@@ -80,7 +80,7 @@ class AsciiTorque(TorqueSensor):
             tau = decode_line(line)
             if tau is not None:
                 self._useless = 0
-                over = abs(tau) >= 0.999 * self.place.range
+                over = self.place.at_its_end(tau)
                 t = self._clock.now() - self._delay
                 self._last = TorqueReading(t, self._direction * tau, int(Flag.SATURATED_TAU) if over else 0)
                 break

@@ -77,6 +77,6 @@ class Cia404(OnSync, TorqueSensor):
         if is_never(latched) or latched == self._last.t:
             return self._last
         tau = self._direction * self._inputs.values[0] * self._scale
-        over = not math.isfinite(tau) or abs(tau) >= 0.999 * self.place.range
+        over = not math.isfinite(tau) or self.place.at_its_end(tau)
         self._last = TorqueReading(latched, tau, int(Flag.SATURATED_TAU) if over else 0)
         return self._last

@@ -14,6 +14,9 @@ from rig.core.errors import UsageError
 UNASKED = {"slcan": {"timeout": 0.0}}  # s; python-can's 1 ms is waited at every look at an empty line, four a tick
 
 
+LAST = 0.999  # of the range of a torque sensor
+
+
 @dataclass(frozen=True)
 class Place:
     """What the bench file says of one device: its own keys, and the numbers it has to agree with."""
@@ -33,6 +36,11 @@ class Place:
     def where(self) -> str:
         """What errors call the section."""
         return f"devices.{self.role}"
+
+    def at_its_end(self, tau: float) -> bool:
+        """Whether a torque [N·m] is the last that a sensor of this range tells, to one of its counts: there may be
+        more."""
+        return abs(tau) >= LAST * self.range
 
     def need(self, key: str) -> Any:
         """An option without which the device cannot be reached. Raises UsageError."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import secrets
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from rig.core.procedure import Envelope
 from rig.core.units import ARCMIN
 from rig.refusals import refuse_beyond_limits, refuse_endless
 
+SEEDS = 2**31
 ROLE = {"theta_l": "load_encoder", "tau_l": "torque_sensor"}  # which device gives which channel
 
 
@@ -45,6 +47,11 @@ class Campaign:
             return 0.0
         amplitude = self.plan.file.order_2_arcmin * ARCMIN
         return swing(self.bench.declared_gear, amplitude, self.envelope(item).speed)
+
+
+def any_seed() -> int:
+    """Of an order of runs, drawn when none is given."""
+    return secrets.randbelow(SEEDS)
 
 
 def planned(plan: Plan, bench: Bench, seed: int) -> Campaign:

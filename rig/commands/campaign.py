@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import secrets
 import shlex
 import sys
 from collections.abc import Iterator, Sequence
@@ -19,7 +18,7 @@ from rig.campaign.journal import Journal, new_journal, read_journal, refuse_othe
 from rig.campaign.leaving import swept
 from rig.campaign.lost import lost_runs, still_to_make
 from rig.campaign.plan import PLANS, Plan, read_plan
-from rig.campaign.planner import Campaign, planned
+from rig.campaign.planner import Campaign, any_seed, planned
 from rig.campaign.resume import take_up
 from rig.campaign.run import Desk, close_settled, conduct, nothing_left, open_session
 from rig.campaign.steps import Item
@@ -49,7 +48,6 @@ HINTS = {
     "hdrig analyse CAMPAIGN/*kinematic-error* --limit 'peak-to-peak=60 arcsec'"
 }
 """What is said of options that are looked for here and are elsewhere."""
-SEEDS = 2**31  # of the order, drawn when none is given
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -87,7 +85,7 @@ def begin(plan: Plan, args: argparse.Namespace) -> int:
     """A new campaign, or what it would do; `args` are those of `bench_arguments`, and dry_run."""
     overrides = overrides_of(args)
     bench = read_bench(args.bench or DEFAULT, overrides)
-    campaign = planned(plan, bench, secrets.randbelow(SEEDS) if args.seed is None else args.seed)
+    campaign = planned(plan, bench, any_seed() if args.seed is None else args.seed)
     if args.dry_run:
         return foretell(args.json, dry_run.lines(campaign))
     refuse_nobody(campaign, range(len(campaign.items)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import secrets
 import shlex
 import sys
 from collections.abc import Sequence
@@ -19,10 +18,10 @@ from rig.campaign.journal import Journal, new_journal, read_journal
 from rig.campaign.leaving import swept
 from rig.campaign.lost import lost_runs
 from rig.campaign.plan import PLANS, read_plan
-from rig.campaign.planner import Campaign, planned
+from rig.campaign.planner import Campaign, any_seed, planned
 from rig.campaign.resume import take_up
 from rig.campaign.run import nothing_left, open_session
-from rig.commands.campaign import DEFAULT, SEEDS, Terminal, overrides_of, refuse_nobody
+from rig.commands.campaign import DEFAULT, Terminal, overrides_of, refuse_nobody
 from rig.commands.options import bench_arguments, show_argument
 from rig.commands.show.at_the_rig import at_the_rig
 from rig.commands.show.beforehand import refusing
@@ -68,7 +67,7 @@ def _begin(args: argparse.Namespace) -> int:
 
     overrides = overrides_of(args)
     bench = read_bench(args.bench or DEFAULT, overrides)
-    seed = secrets.randbelow(SEEDS) if args.seed is None else args.seed
+    seed = any_seed() if args.seed is None else args.seed
     campaign = planned(read_plan(args.plan), bench, seed)
     refuse_nobody(campaign, range(len(campaign.items)))
     budget = BUDGET if args.budget_minutes is None else args.budget_minutes

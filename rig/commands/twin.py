@@ -26,7 +26,6 @@ USUAL = 3.0  # s that a start takes at most where nothing has to be compiled
 SLOW = "starting: the plant is being compiled, as on the first start on a machine; ten seconds or more"
 FOLDER = Path("/tmp/hdrig-twin")
 MOST_LINES = 900.0  # lines/s, 12 bytes each, that a line of 115 200 baud carries
-MOTOR_CONSTANT = 0.5  # N·m/A, assumed: no bench file has one yet, and the twin's plant has no current
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -99,7 +98,7 @@ def started(bench: Bench, args: argparse.Namespace) -> tuple[Assembly, Process]:
     from sim.world import MOST_LOAD
 
     assert bench.file.twin is not None
-    rating = Rating(bench.file.motor.torque_rated, MOTOR_CONSTANT)
+    rating = Rating(bench.file.motor.torque_rated)
     assembly = Assembly(twin_parameters(bench.file), bench.file.twin.seed, rating, args.bitrate)
     doors = Doors(args.bus, args.control, args.serial, args.slcan, args.socketcand, args.rate, args.odrive)
     return assembly, Process(assembly, doors, bench.limits.shaft_torque or MOST_LOAD)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, final
 from rig.bench import BENCHES, Bench, override
 from rig.config.bench_file import read_bench
 from rig.config.text_file import load_text
-from rig.drill.rig import MOTOR_CONSTANT, STALE, DrillRig
+from rig.drill.rig import STALE, DrillRig
 from sim.wire.bus import Bus
 from sim.wire.faults.of_bus import BusFaults
 from sim.wire.faults.of_sensors import SensorFaults
@@ -34,7 +34,7 @@ class ODriveRig(DrillRig):
         """The shipped CANopen bench with another drive."""
         assembly = self.assembly
         self.bus = Bus(assembly.agenda, assembly.bus.bitrate)
-        rating = Rating(assembly.drive.rating.torque, MOTOR_CONSTANT)
+        rating = Rating(assembly.drive.rating.torque)
         self.axis = Axis(self.bus, NODE, assembly.world, rating, Settings(heartbeat=0.02, watchdog=WATCHDOG))
         self.wire.wait_until(BOOTED)
         text = load_text(BENCHES / "twin-canopen.toml")

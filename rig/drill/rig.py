@@ -24,7 +24,6 @@ from sim.wire.reactor import Reactor
 from sim.wire.verbs import plant_verbs
 
 STALE = "limits.stale_s=0.005"  # as on a machine with real-time scheduling: virtual time has no stalls of its own
-MOTOR_CONSTANT = 0.5  # N·m/A, the twin's nameplate
 
 
 class Rows:
@@ -65,7 +64,7 @@ class DrillRig(ABC):
 
     def __init__(self, seed: int = 7) -> None:
         twin = read("twin").file
-        self.assembly = Assembly(twin_parameters(twin), seed, Rating(twin.motor.torque_rated, MOTOR_CONSTANT), 1e6)
+        self.assembly = Assembly(twin_parameters(twin), seed, Rating(twin.motor.torque_rated), 1e6)
         self.wire = VirtualWire(self.assembly)
         self.bench = self.read_bench()
         self.sent: list[tuple[float, int, bytes]] = []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import secrets
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, final
@@ -12,7 +11,7 @@ from rig.campaign import summary
 from rig.campaign.journal import Journal, new_journal, read_journal, record_of, refuse_other_campaign
 from rig.campaign.leaving import swept
 from rig.campaign.plan import read_plan
-from rig.campaign.planner import Campaign, planned
+from rig.campaign.planner import Campaign, any_seed, planned
 from rig.campaign.resume import take_up
 from rig.campaign.run import Desk, conduct
 from rig.campaign.steps import Item
@@ -24,8 +23,6 @@ from rig.session import Session, Watch
 from rig.session.done import nobody
 from rig.station.analysis import AFTERWARDS, ANALYSE, Analysis
 from rig.station.station import Station, forget
-
-SEEDS = 2**31  # of the order, drawn when none is given
 
 
 def conduct_plan(station: Station, message: Mapping[str, Any]) -> None:
@@ -70,7 +67,7 @@ def _afterwards(station: Station, desk: PageDesk, journal: Journal) -> None:
 
 def _new(station: Station, session: Session, message: Mapping[str, Any]) -> tuple[Journal, Campaign]:
     plan = plan_named(str(message.get("plan", "")), message.get("parameters") or {})
-    campaign = planned(plan, session.bench, secrets.randbelow(SEEDS))
+    campaign = planned(plan, session.bench, any_seed())
     overrides = (station.status.bench or {}).get("overrides", [])
     journal = new_journal(station.root, campaign, session.clock, overrides)
     journal.book["rigging"] = session.rigging.conditions()  # as it stands: weight and pin come off first

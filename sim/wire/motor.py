@@ -16,12 +16,15 @@ REVOLUTION = 2.0 * math.pi
 INT32 = 1 << 32
 
 
+CONSTANT = 0.5  # N·m/A, assumed: no bench file has one yet, and the twin's plant has no current
+
+
 @dataclass(frozen=True)
 class Rating:
     """The motor's plate."""
 
     torque: float  # N·m, 6076
-    constant: float  # N·m/A, torque per current, 6075 = 6076 / constant
+    constant: float = CONSTANT  # N·m/A, torque per current, 6075 = 6076 / constant
 
 
 def wrapped(value: float) -> int:
