@@ -62,9 +62,10 @@ def lagged(x: Array, lag: float, dt: float) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def presliding(theta: Array, x0: float, start: float = 0.0, springs_back: bool = False) -> Array:
+def presliding(theta: Array, x0: float, start: float = 0.0, springs_back: bool = False, back: float = 1.0) -> Array:
     """Dahl's state z, dz/dθ = (1 − z·sgn ω)/x0, from −1 to 1, exact for any step, from `start` on; shape (n,). One that
-    `springs_back` does so as a spring, dz/dθ = 1/x0 until it has let go, as Bouc's and Wen's [wen1976].
+    `springs_back` does so as a spring, dz/dθ = 1/x0 until it has let go, as Bouc's and Wen's [wen1976]. On the way
+    `back` it takes as many times x0.
 
     Where it turns back between two samples it has gone further than either says: to the top of the parabola through
     three of them. Of a way of milliradians that is a twentieth.
@@ -80,13 +81,13 @@ def presliding(theta: Array, x0: float, start: float = 0.0, springs_back: bool =
                 aside = 0.5 * (before - after) / bend
                 top, late = here - 0.25 * (before - after) * aside, aside > 0.0
         if not late:
-            z = _slid(z, top - last, x0, springs_back)
+            z = _slid(z, top - last, x0 if top > last else back * x0, springs_back)
             last = top
-        z = _slid(z, here - last, x0, springs_back)
+        z = _slid(z, here - last, x0 if here > last else back * x0, springs_back)
         out[i] = z
         last = here
         if late:
-            z = _slid(z, top - last, x0, springs_back)
+            z = _slid(z, top - last, x0 if top > last else back * x0, springs_back)
             last = top
     return out
 

@@ -35,6 +35,8 @@ REFERENCES: dict[str, str] = {
     "harmonic drive robotic transmissions, IEEE Int. Conf. Robotics and Automation (1995) 3027-3032",
     "wen1976": "Y.-K. Wen, Method for random vibration of hysteretic systems, J. Engineering Mechanics Division "
     "ASCE 102 (1976) 249-263",
+    "oh2005": "J. Oh, D. S. Bernstein, Semilinear Duhem model for rate-independent and rate-dependent hysteresis, IEEE "
+    "Trans. Automatic Control 50 (2005) 631-645",
     "kuhnen2003": "K. Kuhnen, Modeling, identification and compensation of complex hysteretic nonlinearities: a "
     "modified Prandtl-Ishlinskii approach, European J. Control 9 (2003) 407-418",
     "bartlett1950": "M. S. Bartlett, Periodogram analysis and continuous spectra, Biometrika 37 (1950) 1-16",

@@ -22,6 +22,13 @@ def test_play_loses_twice_its_width_times_the_way_in_a_cycle():
     assert abs(np.trapezoid(y[second], x[second])) == pytest.approx(2 * 1.0 * 2 * (5.0 - 1.0), rel=1e-3)
 
 
+def test_presliding_may_take_another_way_back():
+    theta = np.concatenate([np.linspace(0, 1, 1000), np.linspace(1, 0, 1000)])
+    z = presliding(theta, 0.05, 0.0, False, 3.0)
+    np.testing.assert_allclose(z[:999], 1 - np.exp(-theta[:999] / 0.05), rtol=1e-12)
+    np.testing.assert_allclose(z[1001:], -1 + 2 * np.exp(-(1 - theta[1001:]) / 0.15), atol=0.02)
+
+
 def test_presliding_follows_its_exponential_and_saturates_at_one():
     theta = np.concatenate([np.linspace(0, 1, 101), np.linspace(1, 0.9, 11)])
     z = presliding(theta, 0.05)

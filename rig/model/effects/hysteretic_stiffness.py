@@ -12,7 +12,7 @@ from rig.model.memory import lagged, play, presliding
 
 
 class HystereticStiffness(Effect):
-    """A loop in one of five laws, told by `law`.
+    """A loop in one of seven laws, told by `law`.
 
     0: φ gains Σ c_i·(P_{r_i}[T] − T), what play operators stay behind the torque by: a Prandtl-Ishlinskii loop about a
     spring that is 1/K over a large swing      [kuhnen2003]
@@ -26,6 +26,9 @@ class HystereticStiffness(Effect):
     3: the plays of law 0, each wider under load, φ gains Σ (c_i + d_i·|T|)·(P_{r_i}[T] − T): a loop between 0 and 2
 
     4: friction as in law 1 that springs back until it has let go, dz/dφ = 1/x_0 while z falls      [wen1976]
+
+    5, 6: friction as in law 1 whose branch on the way down opens over 3·x_0, or a third of it: bristles that lie over
+    to one side, as a Duhem loop whose branches are not alike may      [oh2005]
 
     All are rate-independent. Friction holds beside the spring and the damper, so that what it takes of the wind-up is
     late by B_sp/K, as the spring is that a torque winds up. T_h scales the half widths r_i, and is K·x_0.
@@ -49,7 +52,9 @@ class HystereticStiffness(Effect):
     ABOVE_NOISE: Final = 7.0  # times sensor noise in T: by narrower plays it is led, and a fit seems to explain it
     UNMOVED: Final = 5e-6  # rad, 1 arcsec: noise of encoders goes forth and back and would wipe the memory out
     SHORT: Final = 12.0  # N·m: with a longer reach the state is the wind-up itself, and foretells what it is made from
-    PLAYS, FRICTION, WEDGE, SWELLING, SPRINGS_BACK = 0.0, 1.0, 2.0, 3.0, 4.0
+    PLAYS, FRICTION, WEDGE, SWELLING, SPRINGS_BACK, LATE_DOWN, EARLY_DOWN = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
+    LOPSIDED: Final = {LATE_DOWN: 3.0, EARLY_DOWN: 1 / 3.0}
+    OF_FRICTION: Final = (FRICTION, SPRINGS_BACK, LATE_DOWN, EARLY_DOWN)
     AT: Final = 20.0  # N·m, where the loss of a wedge is told
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -58,7 +63,7 @@ class HystereticStiffness(Effect):
         wide = dict.fromkeys(max(w, self._least(reach)) for w in widths)
         plays, swelling = ([(w, law) for w in wide] for law in (self.PLAYS, self.SWELLING))
         wedges = [(w, self.WEDGE) for w in widths]
-        friction = [(w, law) for law in (self.FRICTION, self.SPRINGS_BACK) for w in widths if w < self.SHORT]
+        friction = [(w, law) for law in self.OF_FRICTION for w in widths if w < self.SHORT]
         return (*plays, *friction, *wedges, *swelling)
 
     def has_state(self) -> bool:
@@ -67,7 +72,7 @@ class HystereticStiffness(Effect):
 
     def moved_by_noise(self, shape: Shape) -> bool:
         """Friction is led by the wind-up of the encoders, and a count of theirs may be half of its reach."""
-        return shape[1] in (self.FRICTION, self.WEDGE, self.SPRINGS_BACK)
+        return shape[1] in (*self.OF_FRICTION, self.WEDGE)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """What one operator a half width stays behind by, each once more by the load where it swells; or the friction's
@@ -78,7 +83,8 @@ class HystereticStiffness(Effect):
             behind = np.stack([play(torque, width * share) - torque for share in self.SPREAD], 1)
             by_load = behind * (np.abs(torque) / self.AT)[:, None]
             return {Port.WIND_UP: behind if law == self.PLAYS else np.hstack([behind, by_load])}
-        state = presliding(self._wound(signals), width / signals.gear.K, 0.0, law == self.SPRINGS_BACK)
+        x0, back = width / signals.gear.K, self.LOPSIDED.get(law, 1.0)
+        state = presliding(self._wound(signals), x0, 0.0, law == self.SPRINGS_BACK, back)
         held = state * np.abs(torque) if law == self.WEDGE else state
         return {Port.WIND_UP: lagged(held, signals.gear.damped_for, signals.dt)[:, None]}
 
@@ -115,7 +121,7 @@ class HystereticStiffness(Effect):
         width, law = shape
         if law == self.WEDGE:
             return {"loss_at_20_Nm": np.array([-2.0 * self.AT])}
-        if law in (self.FRICTION, self.SPRINGS_BACK):
+        if law in self.OF_FRICTION:
             return dict.fromkeys(("hysteresis_loss", "loss_at_20_Nm"), np.array([-2.0]))
         plays = 2.0 * width * np.array(self.SPREAD)
         if law == self.PLAYS:
@@ -126,7 +132,7 @@ class HystereticStiffness(Effect):
         """Of T_h; the law is chosen, not fitted."""
         widths = [w for w, _ in self.shapes(reach)]
         least = max(min(widths, default=0.0) / 3, self._least(reach))
-        return ((least, max(widths) * 3), (self.PLAYS, self.SPRINGS_BACK)) if widths else ()
+        return ((least, max(widths) * 3), (self.PLAYS, self.EARLY_DOWN)) if widths else ()
 
     def _least(self, reach: Reach) -> float:
         """T_h whose narrowest play is as wide as sensor noise lets one be, N·m."""
