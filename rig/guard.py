@@ -100,6 +100,7 @@ class Guard:
         return (sample.theta_m - start.theta_m) / self.ratio - (sample.theta_l - start.theta_l)
 
 
+WOUND = 0.05  # of the shaft torque allowed: the zero of a sensor and the friction of the load leave less at rest
 LOAD_MARGIN = 2.0  # a wrong scale or sign is for the proof to find; a motor encoder that died is for the guard
 TORQUE_MARGIN = 1.1  # the drive's torque reading overshoots and is noisy; the command itself is clipped at the limit
 

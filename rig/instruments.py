@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -21,6 +22,8 @@ FROZEN_TAU = int(Flag.FROZEN_TAU)  # plain integers: one operation on an enum co
 new = tuple.__new__  # half the cost of a NamedTuple's own constructor, paid every tick
 GLANCE = 0.05  # s between two looks that tell a turning motor: one count of 2000 a turn is 0.06 rad/s in it
 TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
+LOOKS, APART = 10, 0.01  # looks at the shaft torque of a rig at rest, s between two
+UNTOLD = Flag.STALE_TAU | Flag.FROZEN_TAU | Flag.SATURATED_TAU  # of a torque that is not that of now
 ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
 
 
@@ -137,6 +140,17 @@ class Instruments:
             return self.read(self.clock.wait_until(asked))
         self.latch()
         return self.read(self.clock.wait_until(asked + ANSWER))
+
+    def still_carried(self, fresh: float) -> float | None:
+        """Mean of a few looks at the shaft torque, N·m; None where the sensor says nothing of now, silent for `fresh` s
+        or past its range, or where there is none."""
+        looks = []
+        for _ in range(LOOKS):
+            self.clock.wait_until(self.clock.now() + APART)
+            looks.append(self.look())
+        told = [look.tau_l for look in looks if look.age <= fresh and not look.flags & UNTOLD]
+        told = [tau for tau in told if math.isfinite(tau)]
+        return sum(told) / len(told) if told else None
 
     def still_turning(self, patience: float, meanwhile: Callable[[], None] = lambda: None) -> float:
         """Speed, rad/s, of a motor without torque that has not come to rest in `patience` s; 0 of one that has, or that

@@ -15,7 +15,7 @@ from rig.core.errors import Exit, NotReady
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint
 from rig.core.units import RPM
-from rig.guard import Guard, Trip, stale
+from rig.guard import WOUND, Guard, Trip, stale
 from rig.instruments import TURNS, Instruments
 from rig.process.interrupts import Interrupts
 from rig.process.realtime import RealTime
@@ -29,9 +29,6 @@ RECENT = 0.5  # s after which what a stall has done has swung out
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
 SETTLED = 0.3  # s after the torque is off: the load of a wound-up gear has swung by then
 LET_GO = 1.5  # s after the torque is off: most motors rest by then, and of one that does not people have to know soon
-LOOKS, APART = 10, 0.01  # looks at the shaft torque then, s between two
-WOUND = 0.05  # of the shaft torque allowed: the zero of a sensor and the friction of the load leave less
-UNTOLD = Flag.STALE_TAU | Flag.FROZEN_TAU | Flag.SATURATED_TAU  # of a torque that is not that of now
 WATCH_TICKS = 100  # how often the recorder's health and the operator's view are looked at
 
 
@@ -87,6 +84,7 @@ class Loop:
         self.away = (NEVER, 0.0)  # when this program last came back late, and how late [s]
         self.longest = (NEVER, 0.0)  # the same, of the longest time it was away of late
         self.rows = 0  # handed to the sink so far
+        self.last_heard = 0.0  # N·m of the shaft, in the last row
         self.confirmed = True  # by the drive: that its torque is off, when the run was over
 
     def run(self, procedure: Procedure, setting: Setting) -> Ending:
@@ -272,6 +270,8 @@ class Loop:
 
     def _last_row(self, sample: Sample, asked: Setpoint) -> None:
         """What was seen when the torque had just been taken off."""
+        if isfinite(sample.tau_l):
+            self.last_heard = sample.tau_l
         self.sink.put(sample, self.setpoints.off, self.setpoints.off, asked.theta_ref)
         self.rows += 1
 
@@ -295,12 +295,15 @@ class Loop:
         limit = self.guard.limits.shaft_torque
         if limit is None:
             return ""
-        left = 0.0
-        with suppress(Exception):  # nothing is known of the shaft then
-            left = self._still_carried()
+        carries, left = "still carries", None
+        with suppress(Exception):  # nothing is known of the shaft now
+            self.instruments.clock.wait_until(self.instruments.clock.now() + SETTLED)
+            left = self.instruments.still_carried(self.guard.limits.stale)
+        if left is None:
+            carries, left = "carried, when last heard of,", self.last_heard
         if not abs(left) > WOUND * limit:
             return ""
-        return f"; the shaft still carries {left:+.1f} N·m: the gear is wound up or loaded, {KEEP_CLEAR}"
+        return f"; the shaft {carries} {left:+.1f} N·m: the gear is wound up or loaded, {KEEP_CLEAR}"
 
     def _turns_on(self, last: Sample | None = None) -> str:
         """That the motor turns on without its torque, in words; "" where it comes to rest, as after a `last` sample
@@ -317,17 +320,6 @@ class Loop:
             f"; the motor turns on at {speed / RPM:.0f} rpm without torque: {KEEP_CLEAR}; where a weight drives "
             "it, hold the output and take that off"
         )
-
-    def _still_carried(self) -> float:
-        """Mean of a few looks at the shaft torque, N·m, once the load has swung out."""
-        clock, looks = self.instruments.clock, []
-        clock.wait_until(clock.now() + SETTLED)
-        for _ in range(LOOKS):
-            clock.wait_until(clock.now() + APART)
-            looks.append(self.instruments.look())
-        fresh = [look for look in looks if look.age <= self.guard.limits.stale and not look.flags & UNTOLD]
-        told = [look.tau_l for look in fresh if isfinite(look.tau_l)]
-        return sum(told) / len(told) if told else 0.0  # a sensor that is silent or past its range says nothing of now
 
     def _unconfirmed(self, why: str) -> str:
         """A reason, and that there may be torque still."""

@@ -275,6 +275,16 @@ def test_an_error_under_a_wound_up_gear_says_how_much_torque_is_left(error: Exce
     assert bench.supervisor.fault.endswith(WOUND) != isinstance(error, NotReady)
 
 
+def test_of_a_shaft_that_nobody_reads_any_more_the_last_torque_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench()
+    monkeypatch.setattr(Instruments, "still_carried", lambda self, fresh: None)
+    ending = bench.run(wound_up(bench, lambda: setattr(bench.world, "fault", "silent")))
+    assert (
+        ending.reason
+        == f"a device reports a fault: silent; {WOUND.replace('still carries', 'carried, when last heard of,')}"
+    )
+
+
 @pytest.mark.parametrize(("tau", "flags"), [(float("inf"), Flag.SATURATED_TAU), (44.0, Flag.FROZEN_TAU)])
 def test_a_torque_sensor_that_tells_nothing_of_now_is_not_believed_after_a_trip(
     tau: float, flags: Flag, monkeypatch: pytest.MonkeyPatch

@@ -14,6 +14,7 @@ from rig.core.devices import UNGUARDED, Drive, Watchdog
 from rig.core.errors import Ended, NotReady, RecorderError
 from rig.core.operator import Change, HangWeight, Operator, Reassemble, Rigging
 from rig.core.sample import Sample
+from rig.instruments import Instruments
 from rig.procedures.standstill import Standstill
 from rig.procedures.weigh import Weigh
 from rig.process.interrupts import Interrupts
@@ -86,6 +87,21 @@ def test_a_campaign_taken_up_makes_again_what_was_made_where_the_rig_begins_anew
     session.restore(made, left := Rigging(tau_ext=10.0))
     assert hand.remade == (made if begins_anew else [])
     assert session.rigging == left
+
+
+@pytest.mark.parametrize(
+    ("carries", "weight", "is_said"),
+    [(12.7, 0.0, True), (-12.7, 0.0, True), (-10.1, 10.0, False), (0.9, 0.0, False), (None, 0.0, False)],
+)
+def test_a_shaft_that_carries_what_no_weight_explains_is_said_before_anything_is_energised(
+    session: Session, monkeypatch: pytest.MonkeyPatch, carries: float | None, weight: float, is_said: bool
+) -> None:
+    session.instruments.operator, session.rigging = None, Rigging(tau_ext=weight)  # a rig that was there before
+    monkeypatch.setattr(Instruments, "still_carried", lambda self, fresh: carries)
+    told: list[str] = []
+    monkeypatch.setattr(session.observer, "event", lambda kind, text, t: told.append(text), raising=False)
+    session.check(Standstill(0.5))
+    assert any(text.startswith("before anything is energised the shaft carries") for text in told) == is_said
 
 
 def test_a_fault_is_not_left_while_the_drive_does_not_confirm_that_its_torque_is_off(

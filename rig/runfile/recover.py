@@ -19,6 +19,7 @@ from rig.runfile.remains import ring_of, to_recover_from
 from rig.runfile.restore import restore, samples_as_closed
 from rig.runfile.samples import open_samples
 
+ENDS, READY = ("state", "operator"), "ready: "  # how the event of a run that came to its end begins
 FAULT = "fault: "  # how the event of a trip begins: the state it leads to
 
 
@@ -133,6 +134,9 @@ def _reason(folder: Path, about: Mapping[str, Any]) -> str:
     trips = [str(e.get("text")) for e in read_events(folder) if e.get("kind") == "trip" and e.get("t") is not None]
     if trips:  # those without a time were before this run
         return f"it had tripped, and its files were not closed after that: {trips[0].removeprefix(FAULT)}; {found}"
+    ended = [str(e.get("text")) for e in read_events(folder) if e.get("kind") in ENDS and e.get("t") is not None]
+    if ended and ended[-1].startswith(READY):
+        return f"it was over, and its files were not closed after that: {ended[-1].removeprefix(READY)}; {found}"
     return f"the program was killed or the power failed; {found}"
 
 

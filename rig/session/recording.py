@@ -11,7 +11,7 @@ from typing import Any
 
 from rig.bench import Bench
 from rig.control.setpoints import setpoints_of
-from rig.core.errors import Ended, Exit, HdrigError, RecorderError
+from rig.core.errors import Ended, Exit, HdrigError, RecorderError, with_notes
 from rig.core.procedure import Procedure, Setting
 from rig.core.sample import Mode, Sample
 from rig.guard import Guard
@@ -58,7 +58,7 @@ class Recording:
                 rows, confirmed = loop.rows, loop.confirmed
         except HdrigError as error:
             status = "tripped" if error.exit is Exit.TRIPPED else "stopped"
-            ending = Ending(status, str(error), error.exit, confirmed=confirmed)
+            ending = Ending(status, with_notes(error), error.exit, confirmed=confirmed)
             failed = error
             raise
         finally:

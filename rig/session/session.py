@@ -17,6 +17,7 @@ from rig.core.errors import Ended, HdrigError, NotReady
 from rig.core.operator import Change, ClearFault, Operator, Rigging
 from rig.core.procedure import Procedure
 from rig.core.sample import Mode
+from rig.guard import WOUND
 from rig.procedures.sign_and_scale import Proof, SignAndScale
 from rig.procedures.weigh import Weigh, Weighing
 from rig.process.interrupts import Interrupts
@@ -29,7 +30,7 @@ from rig.session.log import SessionLog
 from rig.session.manifest import manifest_of
 from rig.session.observer import Observer
 from rig.session.recording import Recording
-from rig.supervisor import UNCONFIRMED, Act, State, Supervisor
+from rig.supervisor import KEEP_CLEAR, UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
 
 
@@ -106,6 +107,23 @@ class Session:
         refuse_beyond_limits(self.bench, procedure)
         refuse_no_room(self.root, self._rows(procedure), procedure.title())
         refuse_turning(self.instruments, self._refuse_now)
+        if (told := self._wound_up()) is not None:
+            self.log.event("note", told)
+
+    def _wound_up(self) -> str | None:
+        """That the shaft carries a torque which no weight explains, in words; None where it does not, or a rig that
+        begins anew with each connection cannot."""
+        limit, operator = self.bench.limits.shaft_torque, self.instruments.operator or self.hand
+        if limit is None or (operator is not None and operator.begins_anew):
+            return None
+        carried = self.instruments.still_carried(self.bench.limits.stale)
+        expected = (self.zero.torque if self.zero else 0.0) - self.rigging.tau_ext
+        if carried is None or abs(carried - expected) <= WOUND * limit:
+            return None
+        return (
+            f"before anything is energised the shaft carries {carried:+.1f} N·m, {expected:+.1f} N·m expected: the "
+            f"gear is wound up, or something hangs there, {KEEP_CLEAR}"
+        )
 
     def _rows(self, procedure: Procedure) -> float:
         """Most that it records, with the proof that has to come first."""

@@ -194,6 +194,17 @@ def test_recover_takes_a_trip_that_was_written_down_into_account(tmp_path: Path)
     assert errors(folder) == []
 
 
+def test_recover_takes_a_run_that_was_over_for_no_kill(tmp_path: Path) -> None:
+    folder = dead_run(tmp_path)
+    with EventLog(folder) as events:
+        events.write("state", "running: kinematic-error run", 0.0)
+        events.write("state", "ready: the procedure came to its end", 0.4)
+    recover(folder)
+    assert "it was over" in manifest_of(folder)["exit_reason"]
+    assert "the procedure came to its end" in manifest_of(folder)["exit_reason"]
+    assert "power" not in manifest_of(folder)["exit_reason"]
+
+
 def test_recover_takes_no_trip_of_before_the_run_for_its_end(tmp_path: Path) -> None:
     folder = dead_run(tmp_path)
     with EventLog(folder) as events:
