@@ -330,7 +330,9 @@ class Loop:
         if not self.confirmed:
             why = self._unconfirmed(ending.reason)
             self.supervisor.act(Act.TRIP, why)
-            return Ending("tripped", why, Exit.TRIPPED, ending.finding, confirmed=False)
+            if seen := self._wound_up():
+                self.supervisor.amend(seen)
+            return Ending("tripped", f"{why}{seen}", Exit.TRIPPED, ending.finding, confirmed=False)
         if ending.status == "tripped":
             self.supervisor.act(Act.TRIP, ending.reason)  # latched before anything is looked at
             if seen := self._still_there():

@@ -31,6 +31,9 @@ class Observer:
     def event(self, kind: str, text: str, t: float | None) -> None:
         """As it goes into `events.jsonl`; `t` s since the run's start, None outside of one."""
 
+    def warned(self, text: str) -> None:
+        """Of something about the rig that whoever is near has to know before it is energised."""
+
     def begun(self, run: Begun) -> Watch:
         """A run is about to start; what is returned is shown a sample every 100 ticks, beside the run's own watch."""
         return nobody

@@ -49,6 +49,7 @@ class Session:
     create: Callable[[Path, str, dict[str, Any], str], Path] = create  # how run folders lie in `root`
     checks: str = ""  # folder within `root` for the runs that only show how the rig is
     observer: Observer = field(default_factory=Observer)  # who looks on: told of events and runs as they come
+    _warned: set[str] = field(default_factory=set, init=False, repr=False)
     unsure: str = ""  # the change that was asked for and not shown; no run until one is
     folder: Path | None = None  # of the newest run; None when it got none
     proof: Proof | None = None  # what sign-and-scale found since the last reset
@@ -68,7 +69,7 @@ class Session:
             for remark in device.remarks:
                 self.log.event("note", remark)
         if self.unguarded:
-            self.log.event("note", UNGUARDED)
+            self._warn(UNGUARDED)
         self.supervisor.act(Act.CONNECT)
         if self.simulated and not self.bench.simulated:
             self.observer.simulated(self.bench.file.name)
@@ -108,7 +109,14 @@ class Session:
         refuse_no_room(self.root, self._rows(procedure), procedure.title())
         refuse_turning(self.instruments, self._refuse_now)
         if (told := self._wound_up()) is not None:
-            self.log.event("note", told)
+            self._warn(told)
+
+    def _warn(self, text: str) -> None:
+        """Whoever looks on, once, and the next run's events."""
+        if text not in self._warned:
+            self._warned.add(text)
+            self.log.event("note", text)
+            self.observer.warned(text)
 
     def _wound_up(self) -> str | None:
         """That the shaft carries a torque which no weight explains, in words; None where it does not, or a rig that

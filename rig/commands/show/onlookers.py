@@ -22,6 +22,10 @@ class Onlookers(Observer):
         for one in self._each:
             one.simulated(bench)
 
+    def warned(self, text: str) -> None:
+        for one in self._each:
+            one.warned(text)
+
     def event(self, kind: str, text: str, t: float | None) -> None:
         for one in self._each:
             one.event(kind, text, t)

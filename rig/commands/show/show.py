@@ -100,6 +100,10 @@ class Show(Observer):
         """From the session."""
         self.tell(kind, text=text, t=t)
 
+    def warned(self, text: str) -> None:
+        """From the session."""
+        self.say(text)
+
     def begun(self, run: Begun) -> Watch:
         """From the session: a run is about to start."""
         self.energised = True
