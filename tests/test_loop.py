@@ -275,14 +275,21 @@ def test_an_error_under_a_wound_up_gear_says_how_much_torque_is_left(error: Exce
     assert bench.supervisor.fault.endswith(WOUND) != isinstance(error, NotReady)
 
 
-def test_of_a_shaft_that_nobody_reads_any_more_the_last_torque_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("confirms", [True, False])
+def test_of_a_shaft_that_nobody_reads_any_more_the_last_torque_is_said(
+    monkeypatch: pytest.MonkeyPatch, confirms: bool
+) -> None:
     bench = Bench()
     monkeypatch.setattr(Instruments, "still_carried", lambda self, fresh: None)
-    ending = bench.run(wound_up(bench, lambda: setattr(bench.world, "fault", "silent")))
-    assert (
-        ending.reason
-        == f"a device reports a fault: silent; {WOUND.replace('still carries', 'carried, when last heard of,')}"
-    )
+
+    def silent() -> None:
+        bench.world.fault, bench.world.confirms = "silent", confirms
+
+    ending = bench.run(wound_up(bench, silent))
+    said = WOUND.replace("still carries", "carried, when last heard of,")
+    lost = "" if confirms else f"; {UNCONFIRMED}"
+    assert ending.reason == f"a device reports a fault: silent{lost}; {said}"
+    assert bench.supervisor.fault == ending.reason
 
 
 @pytest.mark.parametrize(("tau", "flags"), [(float("inf"), Flag.SATURATED_TAU), (44.0, Flag.FROZEN_TAU)])
