@@ -12,7 +12,7 @@ from typing import Final
 from rig.core.errors import HdrigError
 from rig.runfile.events import EventLog
 
-PATIENCE: Final = 10.0  # s for the last lines to be written when the run is closed, as the recorder has for its rows
+PATIENCE: Final = 10.0  # s for the last lines to be written when the run is closed
 
 
 class Behind:
