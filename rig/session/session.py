@@ -49,7 +49,6 @@ class Session:
     create: Callable[[Path, str, dict[str, Any], str], Path] = create  # how run folders lie in `root`
     checks: str = ""  # folder within `root` for the runs that only show how the rig is
     observer: Observer = field(default_factory=Observer)  # who looks on: told of events and runs as they come
-    _warned: set[str] = field(default_factory=set, init=False, repr=False)
     unsure: str = ""  # the change that was asked for and not shown; no run until one is
     folder: Path | None = None  # of the newest run; None when it got none
     proof: Proof | None = None  # what sign-and-scale found since the last reset
@@ -108,15 +107,11 @@ class Session:
         refuse_beyond_limits(self.bench, procedure)
         refuse_no_room(self.root, self._rows(procedure), procedure.title())
         refuse_turning(self.instruments, self._refuse_now)
-        if (told := self._wound_up()) is not None:
-            self._warn(told)
 
     def _warn(self, text: str) -> None:
-        """Whoever looks on, once, and the next run's events."""
-        if text not in self._warned:
-            self._warned.add(text)
-            self.log.event("note", text)
-            self.observer.warned(text)
+        """Whoever looks on, and the next run's events."""
+        self.log.event("note", text)
+        self.observer.warned(text)
 
     def _wound_up(self) -> str | None:
         """That the shaft carries a torque which no weight explains, in words; None where it does not, or a rig that
@@ -237,6 +232,8 @@ class Session:
     def _run(self, procedure: Procedure, root: Path, watch: Watch) -> Done:
         self.folder = None
         self.check(procedure)
+        if (told := self._wound_up()) is not None:
+            self._warn(told)
         self._refuse_now()
         if self.supervisor.state is State.CONNECTED:
             self.supervisor.act(Act.CHECK)
