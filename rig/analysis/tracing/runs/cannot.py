@@ -48,12 +48,24 @@ def cannot(runs: Sequence[Recording]) -> tuple[str, ...]:
     found = [sentence for channel, sentence in SENSORS.items() if channel not in has]
     moving = [run for run in runs if run.procedure != "standstill"]
     found += _answered(moving)
-    found += _no_torque(has, moving) + _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
+    found += _no_torque(has, moving) + _unvaried(has, moving)
     found += _held_output(moving) + _held_motor(moving)
     found += _gain(moving)
     found += _late_motor(moving)
     found += _fast(moving)
     return tuple(found)
+
+
+def see_little(runs: Sequence[Recording]) -> bool:
+    """Whether a campaign lacks a sensor, or what it takes for most effects to show: that nothing is found in it is no
+    word on what it could not show."""
+    has = read_by_any(runs)
+    return bool({*SENSORS, "tau_l"} - has or _unvaried(has, [run for run in runs if run.procedure != "standstill"]))
+
+
+def _unvaried(has: frozenset[str], moving: Sequence[Recording]) -> list[str]:
+    """What was never repeated, or was one and the same in all runs."""
+    return _alone(moving) + _one_way(moving) + _one_speed(has, moving) + _one_load(moving)
 
 
 def _answered(runs: Sequence[Recording]) -> list[str]:

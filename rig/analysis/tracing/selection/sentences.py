@@ -25,16 +25,18 @@ def lacks(names: Sequence[str], before: float, after: float, of: str = "worst") 
     )
 
 
-def nothing(read: Sequence[str], after: float) -> str:
-    """That nothing is missing in the channels that were `read`, by letter: of the others nothing is said."""
+def nothing(read: Sequence[str], after: float, little: bool) -> str:
+    """That nothing is missing in the channels that were `read`, by letter: of the others nothing is said, nor where
+    the runs show `little` of what they do."""
     leaves = f"the baseline leaves {after:.2f} times the floor on held-out runs."
     if after > EXPLAINED:
         leaves += " So few rows may leave as much by chance, or by friction that differs from run to run."
     unread = [CHANNEL[c].name for c in WHOLE if c not in read]
+    missing = "Nothing that these runs could show is missing" if little else "Nothing is missing"
     if not read or not unread:
-        return f"Nothing is missing: {leaves}"
+        return f"{missing}: {leaves}"
     of = _listed([CHANNEL[c].name for c in read])
-    return f"Nothing is missing in the {of}: {leaves} Of the {_listed(unread)} these runs show nothing."
+    return f"{missing} in the {of}: {leaves} Of the {_listed(unread)} these runs show nothing."
 
 
 def of_the_rest(best: Home, total: float) -> str:

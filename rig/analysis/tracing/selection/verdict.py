@@ -23,6 +23,7 @@ from rig.analysis.tracing.rest.warm_zeros import warm_zeros
 from rig.analysis.tracing.rest.zeros_by_load import zeros_by_load
 from rig.analysis.tracing.rest.zeros_by_speed import zeros_by_speed
 from rig.analysis.tracing.rest.zeros_by_way import zeros_by_way
+from rig.analysis.tracing.runs.cannot import see_little
 from rig.analysis.tracing.runs.recording import read_by_any
 from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
@@ -243,7 +244,8 @@ def _settled(asked: Asked, names: tuple[str, ...], before: float, after: float) 
     """Nothing loud remains; `before` and `after` are what the worst channel has left, in floors."""
     p = asked.p
     if not names:
-        sentence = nothing([c for c in WHOLE if any(key[1] == c for key in p.held_out.floors)], after)
+        read = [c for c in WHOLE if any(key[1] == c for key in p.held_out.floors)]
+        sentence = nothing(read, after, see_little(p.campaign.runs))
         return Conclusion(Verdict(Status.NOTHING, (), (), None, None, None, sentence), None, (), None)
     rivals, next_run = deciding(p, names, asked.found)
     if twins := inseparable(names, read_by_any(p.eq.runs)):
