@@ -121,6 +121,7 @@ def test_one_run_or_two_are_traced_with_turns_of_their_own_held_out(
     found = checked(trace(reduced(tmp_path, open_1, runs, ())))
     assert found.verdict.status == "no_missing_effect"
     assert "a third of every run" in found.held_out_how
+    assert found.verdict.sentence.startswith("Nothing that these runs could show is missing")
 
 
 def test_one_way_and_one_speed_are_told_and_what_they_mix_up(tmp_path: Path, open_1: Path):

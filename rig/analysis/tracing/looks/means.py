@@ -23,6 +23,7 @@ from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.searched import searched
+from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.selected import Selected
 from rig.model.effect import Array
 from rig.model.effects.quadratic_drag import QuadraticDrag
@@ -125,10 +126,13 @@ def _friction(selected: Selected, run: int) -> float:
 
 def taken(so_far: Selected, found: Found, campaign: Campaign, hold_out: Sequence[str]) -> tuple[Selected, Found]:
     """The same where no run's motor torque has a mean of its own. It counts where it names what friction goes with,
-    beside all that had a name and nothing else, and explains everything."""
+    beside all that had a name and nothing else, and explains everything: more than a law without a name did that it is
+    without."""
     looks = [replace(run.look, steady=True) for run in so_far.p.campaign.runs]
     p = prepare(looking(campaign, looks), hold_out)
     other, ranked = searched(p, TOLD, lambda one: not TOLD.isdisjoint(one.names) or one.left < so_far.left)
     new = other.names - so_far.names
-    told = not other.loud and other.names > so_far.names and new <= TOLD
+    told = not other.loud and other.names > so_far.names - CONFOUNDERS.keys() and new <= TOLD
+    if not so_far.names <= other.names:
+        told = told and other.left < so_far.left
     return (other, ranked) if told else (so_far, found)
