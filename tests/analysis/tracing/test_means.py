@@ -111,3 +111,18 @@ def test_the_look_counts_where_it_adds_what_means_tell_of_and_explains_everythin
     so_far: Any = SimpleNamespace(names=set(before), left=2.0, p=SimpleNamespace(campaign=SimpleNamespace(runs=())))
     got, _ = means.taken(so_far, SimpleNamespace(), SimpleNamespace(), ())  # type: ignore[arg-type]
     assert (got is other) is counts
+
+
+@pytest.mark.parametrize(("left", "counts"), [(1.04, True), (1.06, False)])
+def test_the_look_counts_in_the_place_of_a_law_without_a_name_that_leaves_more(
+    monkeypatch: pytest.MonkeyPatch, left: float, counts: bool
+) -> None:
+    other: Any = SimpleNamespace(names={"lost_motion", means.WARMING}, loud=False, left=left)
+    so_far: Any = SimpleNamespace(
+        names={"lost_motion", "constant_drift"}, left=1.05, p=SimpleNamespace(campaign=SimpleNamespace(runs=()))
+    )
+    monkeypatch.setattr(means, "looking", lambda campaign, looks: campaign)
+    monkeypatch.setattr(means, "prepare", lambda campaign, hold_out: None)
+    monkeypatch.setattr(means, "searched", lambda p, wanted, shown: (other, "ranking"))
+    got, _ = means.taken(so_far, SimpleNamespace(), SimpleNamespace(), ())  # type: ignore[arg-type]
+    assert (got is other) is counts
