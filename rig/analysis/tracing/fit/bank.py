@@ -5,11 +5,13 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
 from rig.analysis.tracing.fit.channels import CHANNELS
+from rig.analysis.tracing.fit.crossed import Crossed
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.laid import Block, Index, Sheet, Single
 from rig.analysis.tracing.runs.recording import Recording
@@ -37,6 +39,11 @@ class Bank:
     spoilt: dict[Key, Single]  # what sensor noise does to the columns, in a few runs that stand for all (n, c)
     gram: Products  # of the columns of each term with each other, all runs together
     spoilt_gram: Products  # the same of what noise does to them, for all runs
+
+    @cached_property
+    def crossed(self) -> Crossed:
+        """What knows the products of a model's columns with it."""
+        return Crossed(self.columns, self.spoilt, self.widths())
 
     def widths(self) -> dict[str, int]:
         """Columns per term, by index of term, as a plain dict of channel to total width."""

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from rig.analysis.tracing.fit.bank import Bank, Products
 from rig.analysis.tracing.fit.channels import CHANNELS
-from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.thresholds import CLEAR, FAINTEST, NOISE_ALONE
 from rig.model.effect import Array
-from rig.process.workers import WORKERS
 
 
 @dataclass(frozen=True)
@@ -44,27 +40,6 @@ def own(bank: Bank, d: Design) -> Own:
 def _own(products: Products, d: Design) -> tuple[Array, ...]:
     made = ([d.eq.noise.weight(c) * m for c, m in by_channel.items() if m.size] for by_channel in products)
     return tuple(np.sum(parts, axis=0) if parts else np.zeros((0, 0)) for parts in made)
-
-
-def cross(bank: Bank, d: Design, keys: Sequence[Key], first: int) -> dict[str, Array]:
-    """Products of the model's columns from `first` on with the whole bank, noise taken off, by channel: (p, width)."""
-
-    def summed(some: Sequence[Key]) -> dict[str, Array]:
-        """Over some of the blocks."""
-        out = {c: np.zeros((d.size, wide)) for c, wide in bank.widths().items()}
-        for key in some:
-            w, u = d.eq.noise.weight(key[1]), out[key[1]]
-            for part in (p for p in d.parts[key] if p.at[0] >= first):
-                u[part.at] += w * (part.z.whole().T.astype(np.float32) @ bank.columns[key])
-                if key in bank.spoilt and part.spoilt is not None:
-                    noise = part.spoilt.whole().T.astype(np.float32) @ bank.spoilt[key]
-                    u[part.at] -= w * d.eq.stands_for[key] * noise
-        return out
-
-    mine = sorted((key for key in keys if key in bank.columns), key=lambda key: -bank.columns[key].size)
-    with ThreadPoolExecutor(WORKERS) as pool:  # blocks by turns: products of large matrices leave the lock alone
-        parts = list(pool.map(summed, [mine[i::WORKERS] for i in range(WORKERS)]))
-    return {c: np.sum([part[c][first:] for part in parts], axis=0) for c in bank.widths()}
 
 
 def gradient(bank: Bank, s: Solution) -> dict[str, Array]:

@@ -9,13 +9,13 @@ from functools import cached_property
 import numpy as np
 
 from rig.analysis.tracing.fit.bank import Bank
-from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS
+from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Key, Term
 from rig.analysis.tracing.fit.leaning import leaning
 from rig.analysis.tracing.fit.model import Design, Solution, design, extended, fit, without
 from rig.analysis.tracing.fit.own_reading import leaves_most
 from rig.analysis.tracing.fit.refine import refine
-from rig.analysis.tracing.fit.scan import Drop, Own, cross, drops, own
+from rig.analysis.tracing.fit.scan import Drop, Own, drops, own
 from rig.analysis.tracing.thresholds import CLOSEST, EVIDENCE, MOST, NEARLY, RELATIVE, SMALLEST, STILL, STILL_RUN
 from rig.model.effect import Array, Fit, Reach
 from rig.process.workers import each
@@ -121,18 +121,12 @@ def search(
     above the floor."""
     s = fit(d)
     fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, excluded)
-    first, of_baseline, rows = len(BASELINE), dict[str, Array](), d.eq.rows
     carried = _carries(d)
     barren: set[Term] = set()  # found needless as soon as the others were fitted again
     for _ in range(MOST - len(d.terms)):
         if still(s, floors) and not (quiet and not s.design.terms):
             break
-        if d.eq.rows is not rows:  # the baseline's own columns are others now
-            of_baseline, rows = {}, d.eq.rows
-        u = cross(bank, d, keys, first if of_baseline else 0)  # of terms anew: what they lean on has changed
-        u = {c: np.vstack([of_baseline[c], m]) for c, m in u.items()} if of_baseline else u
-        of_baseline = {c: m[:first] for c, m in u.items()}
-        ranked = fixed.ranked(s, u)
+        ranked = fixed.ranked(s, bank.crossed.of(d, keys))
         ranking = ranking or _best_of_each(ranked, NEARLY)
         worth = [
             r for r in ranked if r.evidence > fixed.least(r, ranking) and r.size > SMALLEST and r.term not in barren
@@ -164,7 +158,7 @@ def ranking_beside(
     """The best shape of every effect, by what it explains beside what the design has, and its laws that explain
     `nearly` as much, a share of it."""
     fixed = Search(bank, own(bank, d), tuple(runs), tuple(keys), covered, frozenset())
-    return _best_of_each(fixed.ranked(fit(d), cross(bank, d, keys, 0)), nearly)
+    return _best_of_each(fixed.ranked(fit(d), bank.crossed.of(d, keys)), nearly)
 
 
 def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], covered: Reach) -> tuple[Scored, Solution]:
