@@ -165,3 +165,26 @@ def test_a_drift_is_told_before_next_to_nothing_that_is_left_and_not_before_more
         p=None, s=None, names=names, loud=True, worst=(left, left), floors={}, after={}, one=1.0
     )
     assert verdict._decided(asked) is (drift if told else rest)
+
+
+@pytest.mark.parametrize(("count", "told"), [(24, True), (9, False)])
+def test_where_a_part_of_every_run_was_fitted_some_are_foretold_by_the_others(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator, count: int, told: bool
+) -> None:
+    times = 80.0 * np.arange(count)
+    runs = [
+        SimpleNamespace(
+            locked=False, has=MEASURED, mean_torque=0.5, pieces=[SimpleNamespace(t=t + np.array([0.0, 20.0]),
+                omega_m=np.full(2, v), torque=np.full(2, 0.5), tau_ext=np.zeros(2))],
+        )
+        for t, v in zip(times, np.resize([10.0, 30.0, -20.0, 40.0], count), strict=True)
+    ]  # fmt: skip
+    eq: Any = SimpleNamespace(runs=runs, rows={(i, "A") for i in range(count)})
+    both = module.both_free(eq, range(count), ())
+    assert (both is not None) is told
+    if both is not None:
+        mine, others = both
+        assert sorted((*mine, *others)) == list(range(count))
+        assert len(others) == count // 3
+        assert min(others) > 0
+        assert max(others) < count - 1

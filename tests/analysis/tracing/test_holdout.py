@@ -114,6 +114,7 @@ def test_of_a_procedure_that_was_run_once_a_part_is_held_out(tmp_path: Path, sha
     parts = split(campaign.runs, ())
     tested = sorted(parts.runs[i].name for i in parts.held_out)
     assert tested == ["lock_60_1 (part held out)", "slow_ke_2", "speed_120rpm_2"]
+    assert sorted(parts.runs[i].name for i in parts.unseen) == ["slow_ke_2", "speed_120rpm_2"]
     lock = [parts.runs[i] for i in range(len(parts.runs)) if parts.runs[i].name.startswith("lock")]
     whole = next(run for run in campaign.runs if run.name == "lock_60_1")
     assert sum(run.duration for run in lock) == pytest.approx(whole.duration)

@@ -28,7 +28,7 @@ def test_it_is_told_where_nothing_else_is_left(
 ) -> None:
     monkeypatch.setattr(verdict, "uneven_drag", lambda s, fitted, unseen, floor, channel: DRAG)
     floors = {(0, channel): 0.05 for channel in over}
-    p = SimpleNamespace(held_out=SimpleNamespace(floors=floors), split=SimpleNamespace(fitted=(0,), held_out=(1,)))
+    p = SimpleNamespace(held_out=SimpleNamespace(floors=floors), split=SimpleNamespace(fitted=(0,), unseen=(1,)))
     after = {(0, channel): np.full(9, 0.05 * times) for channel, times in over.items()}
     asked: Any = SimpleNamespace(p=p, s=None, after=after, floors=floors, sized=("cogging_torque",))
     said = verdict._loads_drag(asked)

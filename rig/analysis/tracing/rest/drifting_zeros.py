@@ -100,10 +100,22 @@ def _drift(eq: Equations, mine: Sequence[int], others: Sequence[int], found: Seq
 def both_free(
     eq: Equations, fitted: Sequence[int], unseen: Sequence[int], read: frozenset[str] = MEASURED
 ) -> tuple[list[int], list[int]] | None:
-    """Those of both that are `free`; None where they are too few, or what is `read` in all was not in one."""
+    """Those of both that are `free`, or where none is unseen some of the fitted ones set `apart`; None where they are
+    too few, or what is `read` in all was not in one."""
     mine, others = (free(eq, runs) for runs in (fitted, unseen))
+    if not others:
+        mine, others = apart(eq, mine)
     enough = len(mine) >= FITTED and len(others) >= UNSEEN
     return (mine, others) if enough and all(eq.runs[i].has >= read for i in (*mine, *others)) else None
+
+
+def apart(eq: Equations, runs: Sequence[int]) -> tuple[list[int], list[int]]:
+    """A part of those runs, and the others, evenly between them in time: where of every run a part was fitted, none of
+    their zeros is unseen but to a curve that is not drawn through it."""
+    in_turn = [runs[k] for k in np.argsort(times(eq, runs))]
+    count = max(UNSEEN, len(runs) // 3)
+    between = {in_turn[int(k)] for k in np.linspace(0, len(runs) - 1, count + 2).round()[1:-1]} if runs else set()
+    return [i for i in runs if i not in between], [i for i in runs if i in between]
 
 
 def free(eq: Equations, runs: Sequence[int]) -> list[int]:

@@ -41,6 +41,12 @@ class Split:
     held_out: tuple[int, ...]
     how: str
 
+    @property
+    def unseen(self) -> tuple[int, ...]:
+        """Runs of which no part was fitted: what a run has to itself, such as its zero, shows in any part of it."""
+        fitted = {whole_run(self.runs[i].name) for i in self.fitted}
+        return tuple(i for i in self.held_out if whole_run(self.runs[i].name) not in fitted)
+
 
 def split(runs: Sequence[Recording], asked: Sequence[str], swapped: bool = False) -> Split:
     """By the names asked for, else whole repeats and levels, else parts of all runs; `swapped`: repeats of those

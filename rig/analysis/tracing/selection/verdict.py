@@ -167,7 +167,7 @@ def _drifting(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[
         ("speed", zeros_by_way),
         *(() if names else (("load", zeros_by_load),)),  # what a name has wrong of its law goes with the load
     )
-    found = ((where, of(s, p.split.fitted, p.split.held_out)) for where, of in ways)
+    found = ((where, of(s, p.split.fitted, p.split.unseen)) for where, of in ways)
     where, drift = next(((where, one) for where, one in found if one is not None), ("", None))
     if drift is None or abs(drift.size) < DRIFTS * np.median([x for (_, c), x in floors.items() if c == "A"]):
         return None
@@ -196,7 +196,7 @@ def _uneven(p: Prepared, s: Solution, names: tuple[str, ...], floors: Mapping[Ke
     """Nothing is above the floor, but the motor's friction or its drag is another one each way; None where neither is.
     Names stand beside it."""
     floor = {c: float(np.median(some)) for c in "ML" if (some := [x for (_, k), x in floors.items() if k == c])}
-    runs = (p.split.fitted, p.split.held_out)
+    runs = (p.split.fitted, p.split.unseen)
     friction = uneven_friction(p.campaign.runs, floor["M"], s.value("tau_l0")) if "M" in floor else None
     drags = (uneven_drag(s, *runs, loud, channel) for channel, loud in floor.items())
     uneven = friction or next((drag for drag in drags if drag), None)
@@ -211,7 +211,7 @@ def _loads_drag(asked: Asked) -> Conclusion | None:
     floors = [x for (_, c), x in asked.floors.items() if c == "L"]
     if loud != ["L"] or not floors:
         return None
-    drag = uneven_drag(asked.s, p.split.fitted, p.split.held_out, float(np.median(floors)), "L")
+    drag = uneven_drag(asked.s, p.split.fitted, p.split.unseen, float(np.median(floors)), "L")
     return None if drag is None else _one_way(drag, asked.sized)
 
 
