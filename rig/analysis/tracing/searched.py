@@ -22,6 +22,7 @@ from rig.analysis.tracing.prepared import Prepared, built
 from rig.analysis.tracing.selection.certain import is_calm, is_calm_there, is_certain
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS, of_the_library
 from rig.analysis.tracing.selection.further import select_further
+from rig.analysis.tracing.selection.named_instead import named_instead
 from rig.analysis.tracing.selection.select import select
 from rig.analysis.tracing.selection.selected import Selected
 from rig.model.effect import Reach
@@ -104,6 +105,7 @@ def _selected(
     asked = (not wanted or not wanted.isdisjoint(found.names)) and (shown is None or shown(selected))
     if asked and (not quiet or selected.loud):  # friction of one speed is told by all runs, under the floor of each
         selected = select_further(selected, found, tried.bank, runs, covered)
+    selected = named_instead(selected, found, tried.bank, runs, covered)
     if let_go and not _remembering(selected.solution.design.terms):
         # zeros were let go for nothing, and with them a run's mean torque told nothing of its mean wind-up
         other = _selected(p, start, tried, quiet, calm, wanted, shown, _remembering(tried.bank.terms))

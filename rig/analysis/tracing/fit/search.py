@@ -163,12 +163,13 @@ def ranking_beside(
 
 def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], covered: Reach) -> tuple[Scored, Solution]:
     """The best of `worth` once its shape is refined, and the fit: among the first, those of other effects or laws with
-    nearly as much evidence. Shapes in the bank are a step apart, and by half a step a look-alike can be ahead."""
+    nearly as much evidence. Shapes in the bank are a step apart, and by half a step a look-alike can be ahead, in all
+    of its laws."""
     close: dict[tuple[str | float, ...], Scored] = {}
     for r in worth:
         if r.evidence > NEARLY * worth[0].evidence:
             close.setdefault((r.term.name, *_chosen(r.term)), r)
-    first = list(close.values())[:CLOSEST]
+    first = _of_every_effect(list(close.values()))[:CLOSEST]
 
     def refined(r: Scored) -> tuple[float, Term]:
         s = refine(d, r.term, runs, covered)[1]
@@ -179,6 +180,12 @@ def _best_refined(d: Design, worth: Sequence[Scored], runs: Sequence[int], cover
     made = each(refined, first)
     best = max(range(len(first)), key=lambda i: made[i][0])
     return first[best], fit(extended(d, made[best][1], runs))
+
+
+def _of_every_effect(close: Sequence[Scored]) -> list[Scored]:
+    """The first law of every effect before the others."""
+    names = [r.term.name for r in close]
+    return [close[i] for i in sorted(range(len(close)), key=lambda i: names[i] in names[:i])]
 
 
 def _worth(s: Solution) -> float:

@@ -131,6 +131,7 @@ class SensorLoop(OfTheTorqueSensor):
     remembers: ClassVar[bool] = True
     # N·m, half: from the swing of a slow run to that of a lock test, so near that a loop in the spring fits no better
     WIDTHS: Final = (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 18.0, 25.0, 32.0, 40.0, 55.0)
+    STEEPEST: Final = 0.05  # of a change of the torque, as gauges that slip make in the worst case; rather its noise
 
     def has_state(self) -> bool:
         """A loop."""
@@ -141,3 +142,8 @@ class SensorLoop(OfTheTorqueSensor):
         torque = np.ascontiguousarray(torque_of(signals))
         torque = torque - torque[0]
         return {Port.READS_TAU_L: np.stack([torque - play(torque, width) for width in self.WIDTHS], 1)}
+
+    def plausible(self, fit: Fit) -> bool:
+        """It reads nearly all of a small change: what takes more off takes the sensor's noise, where little else in
+        the campaign tells what the torque does."""
+        return float(np.sum(fit.coefficients)) < self.STEEPEST
