@@ -38,6 +38,7 @@ class LoadDependentFriction(Effect):
     AT: Final = 20.0  # N·m, where μ_L is told: the middle of a load sweep
     MOST: Final = 3.0  # of μ_L: a gear that loses as much as it gives has 1; hundreds are a torque in another unit
     UNSURE: Final = 0.25  # of the larger μ_L, how negative noise may make the other
+    HERTZ: Final = 2 / 3
     EXPONENTS: Final = (0.4, 2.0)  # Hertzian contacts 2/3, dry friction 1, bending of the cup 2
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -45,7 +46,9 @@ class LoadDependentFriction(Effect):
         that is heavier and loses more when it drives is the same."""
         told = "tau_l" in reach.has or reach.weights > 1
         one = ((0.0, 1.0, self.POWER), (0.0, 0.5, self.SATURATING))
-        return (*one, (1.0, 1.0, self.POWER)) if told else one
+        # where the motor loses alone, and by a root of the load, a straight line wants less than nothing of the other
+        each = ((1.0, 1.0, self.POWER), (1.0, self.HERTZ, self.POWER))
+        return (*one, *each) if told else one
 
     def bounds(self, reach: Reach) -> tuple[tuple[float, float], ...]:
         """The flow and the law are chosen, not fitted."""

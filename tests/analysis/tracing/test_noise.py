@@ -175,7 +175,7 @@ def test_a_floor_leaves_out_what_is_told_apart() -> None:
 
 def test_made_up_numbers_and_a_coarse_encoder_have_a_floor_all_the_same() -> None:
     """Without noise every turn is the one before: a floor of nothing ended a trace in a division by it."""
-    run = SimpleNamespace(step_m=0.005, step_l=0.0, ratio=50.0)
+    run = SimpleNamespace(step_m=0.005, step_l=0.0, ratio=50.0, locked=True, turning=0.0, pieces=[None], has={"t"})
     y = {"A": 1e-4 * np.sin(np.arange(1000.0)), "M": 0.3 + 0.1 * np.sin(np.arange(1000.0))}
     eq: Any = SimpleNamespace(runs=[run], rows={(0, c): SimpleNamespace(y=x) for c, x in y.items()})
     assert finest(eq, "A") == pytest.approx(1e-4 / 12**0.5 / 4, rel=1e-3)  # of a count of 0.1 mrad at the output

@@ -17,6 +17,7 @@ from rig.analysis.tracing.floor.neighbours import neighbours, turn_by_turn
 from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.floor.repeats import Scatter, effective, scatter
+from rig.analysis.tracing.floor.rounded import rounded
 from rig.analysis.tracing.floor.stroke_by_stroke import beside_the_angle
 from rig.analysis.tracing.runs.alike import as_fast, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
@@ -24,7 +25,6 @@ from rig.analysis.tracing.thresholds import TURNED_BACK
 from rig.model.effect import Array
 
 FINEST = 1e-5  # of what a channel swings by, RMS: no rig repeats better, and numbers made up without noise do
-OF_A_COUNT = 1 / (4 * 12**0.5)  # its rounding, and what the low-pass leaves of that at least
 NEVER_COMPARED = "lock tests alone, none of them done twice: all that is left counts as noise"
 TOO_SHORT = "too few turns to compare them: all that is left counts as noise"
 A_FEW = 2  # runs: where none of more can be compared, what is rough in them has to do, or nothing would be found
@@ -69,12 +69,11 @@ def guess(eq: Equations) -> Noise:
 
 
 def finest(eq: Equations, channel: str) -> float:
-    """The least floor that is believed: made-up numbers, and few repeats of a coarse encoder, have none at all."""
+    """The least floor that is believed: made-up numbers, and repeats that a coarse encoder rounds alike, have none at
+    all."""
     mine = {i: r.y for (i, c), r in eq.rows.items() if c == channel}
     swing = float(np.sqrt(np.mean(np.concatenate([y - y.mean() for y in mine.values()]) ** 2))) if mine else 0.0
-    counts = [float(np.hypot(eq.runs[i].step_m / eq.runs[i].ratio, eq.runs[i].step_l)) for i in mine]
-    rounding = OF_A_COUNT * min(counts) if channel == "A" and counts else 0.0
-    return max(FINEST * swing, rounding, 1e-12)
+    return max(FINEST * swing, rounded(eq, channel), 1e-12)
 
 
 def measure(solution: Solution, among: Sequence[int]) -> Measured:

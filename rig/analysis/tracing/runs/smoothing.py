@@ -111,6 +111,10 @@ class Smoother:
     def _kernel(self, derivative: int) -> Array:
         return kernel(_in_time(self.sigma_hz), self.dt, derivative)
 
+    def lets_through(self, derivative: int) -> float:
+        """RMS of the derivative by time, of that degree, of white noise of which each row has 1."""
+        return float(np.linalg.norm(self._kernel(derivative)))
+
     def rows(self, n: int) -> int:
         """Rows that come out of `n` rows."""
         return max(0, -(-(n - 2 * self.half) // self.step))
