@@ -38,5 +38,5 @@ def _in_a_torque(run: Recording, channel: str) -> float:
     piece = run.pieces[0]
     if run.locked or "t" not in run.has or step <= 0 or speed * piece.dt < FAST * step * piece.thinned:
         return 0.0
-    inertia = float(piece.gear.J_l if load else piece.gear.J_m)
-    return inertia * UNIFORM * step / piece.thinned**0.5 * run.smoother.of(channel).lets_through(2)
+    inertia = piece.gear.J_l if load else piece.gear.J_m
+    return float(inertia * UNIFORM * step / piece.thinned**0.5 * run.smoother.of(channel).lets_through(2))
