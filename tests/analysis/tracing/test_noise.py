@@ -12,11 +12,11 @@ import pytest
 from rig.analysis.tracing.fit.equations import Noise
 from rig.analysis.tracing.floor import of_a_run
 from rig.analysis.tracing.floor.friction import Scattering
-from rig.analysis.tracing.floor.noise import Measured, finest
+from rig.analysis.tracing.floor.noise import Measured, _no_quieter_than_sensors, finest
 from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.floor.offsets import own_offset
 from rig.analysis.tracing.floor.outlying import outlying
-from rig.analysis.tracing.floor.repeats import effective
+from rig.analysis.tracing.floor.repeats import Scatter, effective
 from rig.analysis.tracing.thresholds import LENIENT
 
 SPEEDS = (12.0, 12.0, 20.0, 20.0, 30.0, 30.0, 40.0, 1.0)  # rad/s; the last two were never repeated
@@ -204,3 +204,20 @@ def test_logs_that_say_nothing_have_the_floor_of_those_that_move_alike() -> None
     for run, there in ((2, 1e-3), (3, 5e-3)):
         eq: Any = SimpleNamespace(runs=runs, rows={(run, "M"): SimpleNamespace(y=np.zeros(9), keep=np.ones(9, bool))})
         assert floor_of(of, eq, (run, "M")) == pytest.approx(there)
+
+
+def test_turns_that_are_rounded_alike_are_as_noisy_as_their_sensors() -> None:
+    """Of a run without a repeat no less is believed than the noise of its readings, or of those of its procedure."""
+    runs = [SimpleNamespace(procedure="speed"), SimpleNamespace(procedure="speed"), SimpleNamespace(procedure="lock")]
+    eq: Any = SimpleNamespace(runs=runs)
+
+    def scatter_of(*pair: int) -> Scatter:
+        return Scatter((pair[0], pair[-1]), 1e-3, 500, 0.0, np.ones(20), 100.0)
+
+    white = {(0, "L"): 2e-3, (0, "M"): 5.0}
+    found, said = _no_quieter_than_sensors(eq, [scatter_of(0), scatter_of(1), scatter_of(2)], "L", white)
+    assert [s.rms for s in found] == [2e-3, 2e-3, 1e-3]
+    assert "less than the noise of the readings" in said
+    found, said = _no_quieter_than_sensors(eq, [scatter_of(0, 1)], "L", white)  # repeats begin at other angles
+    assert ([s.rms for s in found], said) == ([1e-3], "")
+    assert _no_quieter_than_sensors(eq, [scatter_of(0)], "L", {(0, "L"): 1.1e-3})[1] == ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from rig.model.effect import Array
 FINEST = 1e-5  # of what a channel swings by, RMS: no rig repeats better, and numbers made up without noise do
 NEVER_COMPARED = "lock tests alone, none of them done twice: all that is left counts as noise"
 TOO_SHORT = "too few turns to compare them: all that is left counts as noise"
+BY_SENSORS = ", where they differ by less than the noise of the readings: that is taken"
 A_FEW = 2  # runs: where none of more can be compared, what is rough in them has to do, or nothing would be found
 BY_COUNTS = ", which is less than the rounding of the readings leaves: that is taken"
 SWOLLEN = 1.2  # times the floor that is believed, from which on it is said that a run's own was not
@@ -87,8 +88,12 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     apart: set[Key] = set()
     interval: dict[str, tuple[float, float]] = {}
     friction = Scattering()
+    design = solution.design
+    white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
     for channel in WHOLE:
         found, words = _compared(eq, e, channel, pairs, among)
+        found, said = _no_quieter_than_sensors(eq, found, channel, white)
+        words += said
         if not found:
             if (left := _locked_alone(eq, e, channel)) is not None:
                 sigma[channel], how[channel] = max(sigma[channel], left), NEVER_COMPARED
@@ -118,8 +123,6 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     local["A"] = own_angle(solution, pairs, sigma["A"] * LEAST_OFFSET)
     if zeros := eq.runs[0].look.zeros:
         local["A"] = about_a_line(solution) or zeros
-    design = solution.design
-    white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)
     noise = _at_reversals(Noise(sigma, kappa, local), turned)
     return Measured(noise, by_run, white, how, free, frozenset(apart), friction, interval)
@@ -159,6 +162,22 @@ def _compared(
     found = found or [s for i in among if (s := turn_by_turn(eq, e, (i, channel))) is not None]
     many = f"{len(found)} run{'' if len(found) == 1 else 's'}"
     return found, f"neighbouring turns or strokes of {many} compared at equal motor angle, no repeats there"
+
+
+def _no_quieter_than_sensors(
+    eq: Equations, found: Sequence[Scatter], channel: str, white: Mapping[Key, float]
+) -> tuple[list[Scatter], str]:
+    """Scatter of single runs, with what their sensors' noise leaves where that is more: encoders round one turn as they
+    do the next where a turn is whole counts. And what is said where it is much more. Repeats begin elsewhere."""
+
+    def sensors(i: int) -> float:
+        """RMS of the noise of run `i`, of those of its procedure where its own is not known, 0 where nobody's is."""
+        like = [v for (j, c), v in white.items() if c == channel and eq.runs[j].procedure == eq.runs[i].procedure]
+        return white.get((i, channel), float(np.sqrt(np.mean(np.square(like)))) if like else 0.0)
+
+    made = [replace(s, rms=max(s.rms, sensors(i))) if (i := s.pair[0]) == s.pair[1] else s for s in found]
+    much = any(new.rms > SWOLLEN * old.rms for new, old in zip(made, found, strict=True))
+    return made, BY_SENSORS if much else ""
 
 
 def _said(eq: Equations, far: Sequence[Scatter]) -> str:
