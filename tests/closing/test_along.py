@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rig.analysis.tracing.rest.home import SIMPLE
+from rig.analysis.tracing.residual.home import SIMPLE
 from rig.analysis.tracing.selection.next_run import along
 from rig.bench import read
 from rig.campaign.plan import parse_plan

@@ -6,7 +6,7 @@ floor/    what no model has to explain: repeats, lines, what every run has to it
 selection/ what may be said: effects scored on unseen runs, rivals, the next run
 looks/    second looks, each at what the first leaves out
 nameless/ laws that are no effect of the library, searched for and never named
-rest/     what is left, and the coordinate it lives in
+residual/ what is left, and the coordinate it lives in
 free_form/ what has no name, drawn where it acts
 outcome/  errors before and after, free simulation, arrays for the page, trace.json
 """

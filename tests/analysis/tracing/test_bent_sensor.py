@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import bent_sensor as module
-from rig.analysis.tracing.rest.bent_sensor import is_the_sensors
+from rig.analysis.tracing.residual import bent_sensor as module
+from rig.analysis.tracing.residual.bent_sensor import is_the_sensors
 from rig.model.effect import MEASURED
 
 WEIGHTS = np.repeat([0.0, -2.5, -5.0, -10.0, -20.0, -40.0], 2)  # N·m

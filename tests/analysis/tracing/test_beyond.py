@@ -11,7 +11,7 @@ import pytest
 
 from rig.analysis.tracing.answer import NextRun, Status, Verdict
 from rig.analysis.tracing.outcome.beyond import Beyond, beyond, undecided
-from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.residual.home import Home
 from rig.analysis.tracing.selection.conclusion import Conclusion
 from rig.analysis.tracing.trace import trace
 from rig.model.effect import Parameter, parameter

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from rig.analysis.tracing.rest import bursts, strikes
-from rig.analysis.tracing.rest.bursts import burst, loudest_burst
-from rig.analysis.tracing.rest.strikes import striking
+from rig.analysis.tracing.residual import bursts, strikes
+from rig.analysis.tracing.residual.bursts import burst, loudest_burst
+from rig.analysis.tracing.residual.strikes import striking
 
 RATE = 120.0  # rows per second
 KEY = (0, "M")

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.comes_and_goes import ComesAndGoes, wave_of_runs
-from rig.analysis.tracing.rest.levels import Runs
+from rig.analysis.tracing.residual.comes_and_goes import ComesAndGoes, wave_of_runs
+from rig.analysis.tracing.residual.levels import Runs
 
 K = 31
 SINCE = np.concatenate([[40.0, 110.0, 230.0], 330.0 + 70.0 * np.arange(10), 1010.0 + 32.0 * np.arange(18)])  # s

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.floor import offsets
-from rig.analysis.tracing.rest import drifting_zeros as module
-from rig.analysis.tracing.rest.drifting_zeros import DriftingZeros, drifting_zeros
+from rig.analysis.tracing.residual import drifting_zeros as module
+from rig.analysis.tracing.residual.drifting_zeros import DriftingZeros, drifting_zeros
 from rig.analysis.tracing.selection import verdict
 from rig.model.effect import MEASURED
 

@@ -13,7 +13,7 @@ import pytest
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.bank import reach
 from rig.analysis.tracing.looks import fast
-from rig.analysis.tracing.rest.above_the_band import Line, _from_speed_to_speed, rings_above
+from rig.analysis.tracing.residual.above_the_band import Line, _from_speed_to_speed, rings_above
 from rig.analysis.tracing.runs import campaign as campaign_module
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.runs.cannot import cannot
@@ -70,7 +70,7 @@ def test_an_order_of_the_load_encoder_is_an_acceleration() -> None:
 def test_it_rings_where_two_runs_show_half_a_floor(
     monkeypatch: pytest.MonkeyPatch, rms: list[float], loud: bool
 ) -> None:
-    floor, module = 2e-6, "rig.analysis.tracing.rest.above_the_band"
+    floor, module = 2e-6, "rig.analysis.tracing.residual.above_the_band"
     runs = [SimpleNamespace(smoother=SimpleNamespace(sigma_hz=36.0)) for _ in rms]
     monkeypatch.setattr(f"{module}._shows", lambda run: True)
     monkeypatch.setattr(f"{module}._from_speed_to_speed", lambda lines, power: [line.height for line in lines])

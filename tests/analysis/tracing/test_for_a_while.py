@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
-from rig.analysis.tracing.rest.for_a_while import ForAWhile, level_for_a_while
-from rig.analysis.tracing.rest.levels import Runs
+from rig.analysis.tracing.residual.for_a_while import ForAWhile, level_for_a_while
+from rig.analysis.tracing.residual.levels import Runs
 from tests.analysis.tracing.spiked import Columns, spiked, started
 
 K = 30

@@ -20,7 +20,7 @@ from rig.analysis.tracing.free_form.factors import began, hats, motor_waves, pas
 from rig.analysis.tracing.free_form.forms import forms
 from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.home import SIMPLE, Home
+from rig.analysis.tracing.residual.home import SIMPLE, Home
 from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import Port, Signals
 from tests.analysis.tracing.spiked import Columns, spiked

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from rig.analysis.tracing.answer import Status
-from rig.analysis.tracing.rest import gains_of_locks as module
-from rig.analysis.tracing.rest.gains_of_locks import Gain, gains_of_locks
+from rig.analysis.tracing.residual import gains_of_locks as module
+from rig.analysis.tracing.residual.gains_of_locks import Gain, gains_of_locks
 from tests.analysis.tracing.spiked import Columns, spiked
 
 SOME = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "load_20nm_2", "load_40nm_1", "load_40nm_2", "speed_200rpm_1",

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.levels import between, left_by_runs, levels
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.levels import between, left_by_runs, levels
 from tests.analysis.tracing.spiked import Columns, spiked
 
 SPEEDS = np.repeat([6.3, 12.6, 21.0, 31.4, 41.9], 4)  # rad/s of the motor, four runs at each

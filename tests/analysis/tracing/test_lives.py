@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from rig.analysis.tracing.rest import lives
+from rig.analysis.tracing.residual import lives
 
 
 @pytest.mark.parametrize(

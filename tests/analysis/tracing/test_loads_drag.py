@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.uneven_drag import UnevenDrag
+from rig.analysis.tracing.residual.uneven_drag import UnevenDrag
 from rig.analysis.tracing.selection import verdict
 
 DRAG = UnevenDrag(-0.6, 0.02, 42.0, 0.99, "L")

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import locks
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.locks import lock_tests_differ
+from rig.analysis.tracing.residual import locks
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.locks import lock_tests_differ
 
 T = np.arange(0.0, 60.0, 0.04)
 STARTS = (1500.0, 1570.0, 1640.0, 1710.0)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.outcome.pictures import interval
-from rig.analysis.tracing.rest.binned import folds
-from rig.analysis.tracing.rest.bins import BINNED, rms
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS, score_of_orders, shares
+from rig.analysis.tracing.residual.binned import folds
+from rig.analysis.tracing.residual.bins import BINNED, rms
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.shares import COORDINATES, PAIRS, score_of_orders, shares
 from rig.analysis.tracing.selection.candidates import Tried, reason
 
 SLOW, FAST = 0.6, 20.0  # output rad seen in a run

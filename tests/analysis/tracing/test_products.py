@@ -7,7 +7,7 @@ import pytest
 
 from rig.analysis.tracing.fit.channels import Rows
 from rig.analysis.tracing.fit.equations import Equations, Noise
-from rig.analysis.tracing.rest.joined import _elsewhere
+from rig.analysis.tracing.residual.joined import _elsewhere
 
 KEY = (0, "M")
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.binned import solved
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.readings import in_columns, waves
+from rig.analysis.tracing.residual.binned import solved
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.readings import in_columns, waves
 
 RUNS, ROWS, ORDER = 6, 4000, 3.3
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.lines import _as_the_motor_turns
+from rig.analysis.tracing.residual.lines import _as_the_motor_turns
 from rig.core.units import RPM
 
 APART = 0.01  # Hz, of runs of 100 s

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Key
-from rig.analysis.tracing.rest import same_spring as module
-from rig.analysis.tracing.rest.same_spring import OtherSpring, same_spring
+from rig.analysis.tracing.residual import same_spring as module
+from rig.analysis.tracing.residual.same_spring import OtherSpring, same_spring
 from rig.model.effect import Array
 
 ROWS, PAIRS, NOISE, SOFT = 1000, 6, 4e-6, 1e-4  # rows, pairs, rad, rad/(N·m)

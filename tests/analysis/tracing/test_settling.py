@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.binned import Halves, folds
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.settling import settled
+from rig.analysis.tracing.residual.binned import Halves, folds
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.settling import settled
 from rig.analysis.tracing.selection.sentences import of_the_rest
 from rig.model.effect import Array
 

@@ -13,7 +13,7 @@ import pytest
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.prepared import Prepared, prepare
-from rig.analysis.tracing.rest.unknown import _is_it
+from rig.analysis.tracing.residual.unknown import _is_it
 from rig.analysis.tracing.runs.campaign import read_campaign
 from rig.analysis.tracing.selection.elimination import _may_stand
 from rig.analysis.tracing.selection.further import _stands_in

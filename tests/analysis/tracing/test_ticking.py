@@ -7,8 +7,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from rig.analysis.tracing.rest import ticking
-from rig.analysis.tracing.rest.ticking import _of_the_clock
+from rig.analysis.tracing.residual import ticking
+from rig.analysis.tracing.residual.ticking import _of_the_clock
 
 
 def test_a_frequency_that_stands_out_in_no_run_is_not_of_the_clock() -> None:

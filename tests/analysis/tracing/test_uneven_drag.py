@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.floor import offsets
-from rig.analysis.tracing.rest import uneven_drag as module
-from rig.analysis.tracing.rest.uneven_drag import UnevenDrag, uneven_drag
+from rig.analysis.tracing.residual import uneven_drag as module
+from rig.analysis.tracing.residual.uneven_drag import UnevenDrag, uneven_drag
 from rig.model.effect import Array
 
 SPEEDS = np.repeat([6.3, -6.3, 12.6, 21.0, -21.0, 31.0, 42.0, -42.0], 3)  # rad/s, each taken three times

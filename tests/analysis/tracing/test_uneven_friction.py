@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.uneven_friction import UnevenFriction, uneven_friction
+from rig.analysis.tracing.residual.uneven_friction import UnevenFriction, uneven_friction
 
 FRICTION, NOISE, FLOOR = 0.18, 2e-3, 2e-3  # N·m at the motor
 ROWS, RATIO = 4000, 50.0

@@ -7,17 +7,17 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import unknown
-from rig.analysis.tracing.rest.binned import Beside, Halves, folds, own_excess, straightened
-from rig.analysis.tracing.rest.home import Home, plainest
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.lines import SENSES, best_order
-from rig.analysis.tracing.rest.past import since_turned
-from rig.analysis.tracing.rest.shares import rising
-from rig.analysis.tracing.rest.sudden import turned_since
-from rig.analysis.tracing.rest.unknown import homes
-from rig.analysis.tracing.rest.whose_order import of_the_output
-from rig.analysis.tracing.rest.worn import worn_off
+from rig.analysis.tracing.residual import unknown
+from rig.analysis.tracing.residual.binned import Beside, Halves, folds, own_excess, straightened
+from rig.analysis.tracing.residual.home import Home, plainest
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.lines import SENSES, best_order
+from rig.analysis.tracing.residual.past import since_turned
+from rig.analysis.tracing.residual.shares import rising
+from rig.analysis.tracing.residual.sudden import turned_since
+from rig.analysis.tracing.residual.unknown import homes
+from rig.analysis.tracing.residual.whose_order import of_the_output
+from rig.analysis.tracing.residual.worn import worn_off
 from rig.model.memory import play
 from tests.some import some
 

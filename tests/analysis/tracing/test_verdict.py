@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from rig.analysis.tracing.fit.equations import Term
-from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.residual.home import Home
 from rig.analysis.tracing.selection.beside_a_law import beside_a_law, beside_little, confounded, larger_than
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.falls import share, share_of_all

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import warm_zeros as module
-from rig.analysis.tracing.rest.warm_zeros import WarmZeros, warm_zeros
+from rig.analysis.tracing.residual import warm_zeros as module
+from rig.analysis.tracing.residual.warm_zeros import WarmZeros, warm_zeros
 from rig.core.units import ARCSEC
 from rig.model.effect import MEASURED, Array
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.in_the_floor import as_runs_begin
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.in_the_floor import as_runs_begin
 from rig.analysis.tracing.selection import where
 from rig.analysis.tracing.selection.where import _in_the_floor_too as in_the_floor_too
 from rig.analysis.tracing.selection.where import _left as left

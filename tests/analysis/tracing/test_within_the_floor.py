@@ -12,10 +12,10 @@ import pytest
 
 from rig.analysis.tracing.answer import Status
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
-from rig.analysis.tracing.rest import in_the_floor
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.in_the_floor import _in_channel, _waves
-from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.residual import in_the_floor
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.in_the_floor import _in_channel, _waves
+from rig.analysis.tracing.residual.joined import Rest
 from rig.analysis.tracing.selection import hidden, next_run
 from rig.analysis.tracing.selection.next_run import Alone, _as_good
 from tests.analysis.tracing.spiked import RATIO, Columns, spiked, under

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import zeros_along as module
-from rig.analysis.tracing.rest.zeros_by_load import ZerosByLoad, zeros_by_load
+from rig.analysis.tracing.residual import zeros_along as module
+from rig.analysis.tracing.residual.zeros_by_load import ZerosByLoad, zeros_by_load
 from tests.analysis.tracing.zeros import SOFT, solution_of
 
 WEIGHTS = np.tile([0.0, -2.5, -5.0, -10.0, -20.0, -40.0, 0.0, 0.0, -10.0, -40.0], 3)  # N·m

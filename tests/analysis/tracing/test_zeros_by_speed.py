@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import zeros_along as module
-from rig.analysis.tracing.rest.zeros_by_speed import ZerosBySpeed, zeros_by_speed
+from rig.analysis.tracing.residual import zeros_along as module
+from rig.analysis.tracing.residual.zeros_by_speed import ZerosBySpeed, zeros_by_speed
 from tests.analysis.tracing.zeros import SOFT, solution_of
 
 SPEEDS = np.tile([12.5, 1.0, 6.0, 21.0, 31.0, 42.0, -6.0, -21.0, -42.0, 42.0], 3)  # rad/s

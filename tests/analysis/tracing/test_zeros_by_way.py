@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest import zeros_by_way as module
-from rig.analysis.tracing.rest.zeros_by_way import ZerosByWay, zeros_by_way
+from rig.analysis.tracing.residual import zeros_by_way as module
+from rig.analysis.tracing.residual.zeros_by_way import ZerosByWay, zeros_by_way
 from rig.core.units import RPM
 from tests.analysis.tracing.zeros import SOFT, solution_of
 

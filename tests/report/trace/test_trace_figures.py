@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS
+from rig.analysis.tracing.residual.shares import COORDINATES, PAIRS
 from rig.report.figures import Frame, svg
 from rig.report.figures.canvas import Drawing
 from rig.report.trace.channels import CHANNELS

@@ -16,8 +16,8 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.free_form.fitted import Fitted, fitted, likeliest, of_some_rows, possible
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import loudness
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import loudness
 from rig.analysis.tracing.thresholds import EVIDENCE, FAR_LESS, PLAIN_ENOUGH
 from rig.process.workers import each
 

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, since_turned
+from rig.analysis.tracing.residual.past import LEAKS, WIDTHS, behind, relaxing, since_turned
 from rig.model.effect import Array, Signals
 from rig.model.waves import powers
 

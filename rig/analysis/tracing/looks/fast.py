@@ -14,7 +14,7 @@ from rig.analysis.tracing.fit.refine import refine
 from rig.analysis.tracing.fit.search import Found, Scored, settled, still
 from rig.analysis.tracing.fit.some import ranking_of_some, some
 from rig.analysis.tracing.prepared import Prepared, prepare
-from rig.analysis.tracing.rest.above_the_band import has_fast_rows, rings_above
+from rig.analysis.tracing.residual.above_the_band import has_fast_rows, rings_above
 from rig.analysis.tracing.runs.campaign import Campaign, read_again
 from rig.analysis.tracing.runs.holdout import split
 from rig.analysis.tracing.searched import Tried, beside

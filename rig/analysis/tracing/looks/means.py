@@ -17,8 +17,8 @@ import numpy as np
 from rig.analysis.tracing.fit.search import Found
 from rig.analysis.tracing.floor.offsets import offset
 from rig.analysis.tracing.prepared import prepare
-from rig.analysis.tracing.rest.drifting_zeros import constants, falling, foretold
-from rig.analysis.tracing.rest.levels import between, levels
+from rig.analysis.tracing.residual.drifting_zeros import constants, falling, foretold
+from rig.analysis.tracing.residual.levels import between, levels
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.campaign import Campaign, looking
 from rig.analysis.tracing.runs.recording import Recording

@@ -2,7 +2,7 @@
 
 One is searched for as an effect is, and never named. Where it explains most, the report says in a sentence what changes
 with what. The second kind is the model's own list, crossed with what may change it: spring, kinematic error, torques as
-read and as told, against time, speed, direction and the angle of the output. Bins along a coordinate, as in `rest`,
+read and as told, against time, speed, direction and the angle of the output. Bins along a coordinate, as in `residual`,
 find what is loud; a law of a few numbers finds what is half a floor.
 
 law.py       what all of them have in common

@@ -8,8 +8,8 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.joined import rest
-from rig.analysis.tracing.rest.lines import spectrum
+from rig.analysis.tracing.residual.joined import rest
+from rig.analysis.tracing.residual.lines import spectrum
 from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.effect import Array
 

@@ -11,10 +11,10 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.outcome.errors import UNITS
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.bins import BINNED, FEWEST, rms
-from rig.analysis.tracing.rest.joined import rest
-from rig.analysis.tracing.rest.lines import spectrum
-from rig.analysis.tracing.rest.shares import shares
+from rig.analysis.tracing.residual.bins import BINNED, FEWEST, rms
+from rig.analysis.tracing.residual.joined import rest
+from rig.analysis.tracing.residual.lines import spectrum
+from rig.analysis.tracing.residual.shares import shares
 from rig.analysis.tracing.runs.strokes import strokes
 from rig.core.units import TURN
 from rig.model.effect import Array

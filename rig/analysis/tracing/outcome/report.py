@@ -29,7 +29,7 @@ from rig.analysis.tracing.outcome.ripple import Ripple, ripples
 from rig.analysis.tracing.outcome.unlike import unlike_declared
 from rig.analysis.tracing.outcome.unnamed import Unnamed, unnamed
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.lives import lives_in
+from rig.analysis.tracing.residual.lives import lives_in
 from rig.analysis.tracing.runs.cannot import cannot, together
 from rig.analysis.tracing.selection.asked import Asked
 from rig.analysis.tracing.selection.candidates import candidates

@@ -18,9 +18,9 @@ from rig.analysis.tracing.free_form.drawn import drawn
 from rig.analysis.tracing.free_form.fitted import of_some_rows
 from rig.analysis.tracing.outcome.result import Curve
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.foretold import unseen_beside
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.residual.foretold import unseen_beside
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.unknown import home
 from rig.analysis.tracing.thresholds import EXPLAINED, NOTEWORTHY
 from rig.model.effect import Array
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rig.analysis.tracing.answer import NextRun, Verdict
-from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.residual.home import Home
 
 
 @dataclass(frozen=True)

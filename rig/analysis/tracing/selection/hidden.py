@@ -12,21 +12,21 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.of_a_run import leniency
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.bursts import burst, loudest_burst, usual_levels
-from rig.analysis.tracing.rest.comes_and_goes import comes_and_goes
-from rig.analysis.tracing.rest.for_a_while import for_a_while
-from rig.analysis.tracing.rest.foretold import smooth_term
-from rig.analysis.tracing.rest.hidden_order import hidden_order
-from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
-from rig.analysis.tracing.rest.in_the_floor import in_the_floor
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.levels import friction_by_speed, of_turning
-from rig.analysis.tracing.rest.locks import lock_tests_differ
-from rig.analysis.tracing.rest.same_spring import same_spring
-from rig.analysis.tracing.rest.strikes import striking
-from rig.analysis.tracing.rest.ticking import largest, ticking
-from rig.analysis.tracing.rest.unknown import home
-from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER
+from rig.analysis.tracing.residual.bursts import burst, loudest_burst, usual_levels
+from rig.analysis.tracing.residual.comes_and_goes import comes_and_goes
+from rig.analysis.tracing.residual.for_a_while import for_a_while
+from rig.analysis.tracing.residual.foretold import smooth_term
+from rig.analysis.tracing.residual.hidden_order import hidden_order
+from rig.analysis.tracing.residual.home import WHERE_IT_TURNS_BACK, Home
+from rig.analysis.tracing.residual.in_the_floor import in_the_floor
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.levels import friction_by_speed, of_turning
+from rig.analysis.tracing.residual.locks import lock_tests_differ
+from rig.analysis.tracing.residual.same_spring import same_spring
+from rig.analysis.tracing.residual.strikes import striking
+from rig.analysis.tracing.residual.ticking import largest, ticking
+from rig.analysis.tracing.residual.unknown import home
+from rig.analysis.tracing.residual.whose_order import WHOLE_ORDER
 from rig.analysis.tracing.runs.alike import alike, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
 from rig.analysis.tracing.runs.recording import Recording

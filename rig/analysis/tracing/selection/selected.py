@@ -10,7 +10,7 @@ from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.fit.parameters import effects
 from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.levels import friction_by_speed, of_turning
+from rig.analysis.tracing.residual.levels import friction_by_speed, of_turning
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.selection.score import HeldOutScore
 from rig.analysis.tracing.thresholds import MISSING

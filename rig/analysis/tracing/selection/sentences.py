@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from rig.analysis.tracing.fit.channels import CHANNEL, WHOLE
-from rig.analysis.tracing.rest.home import Home
+from rig.analysis.tracing.residual.home import Home
 from rig.analysis.tracing.thresholds import EXPLAINED
 from rig.model.effects import LIBRARY
 

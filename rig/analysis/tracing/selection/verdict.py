@@ -12,17 +12,17 @@ from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.bent_sensor import SPRINGS, is_the_sensors
-from rig.analysis.tracing.rest.drifting_zeros import drifting_zeros
-from rig.analysis.tracing.rest.gains_of_locks import gains_of_locks
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import loudness
-from rig.analysis.tracing.rest.uneven_drag import UnevenDrag, uneven_drag
-from rig.analysis.tracing.rest.uneven_friction import UnevenFriction, uneven_friction
-from rig.analysis.tracing.rest.warm_zeros import warm_zeros
-from rig.analysis.tracing.rest.zeros_by_load import zeros_by_load
-from rig.analysis.tracing.rest.zeros_by_speed import zeros_by_speed
-from rig.analysis.tracing.rest.zeros_by_way import zeros_by_way
+from rig.analysis.tracing.residual.bent_sensor import SPRINGS, is_the_sensors
+from rig.analysis.tracing.residual.drifting_zeros import drifting_zeros
+from rig.analysis.tracing.residual.gains_of_locks import gains_of_locks
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import loudness
+from rig.analysis.tracing.residual.uneven_drag import UnevenDrag, uneven_drag
+from rig.analysis.tracing.residual.uneven_friction import UnevenFriction, uneven_friction
+from rig.analysis.tracing.residual.warm_zeros import warm_zeros
+from rig.analysis.tracing.residual.zeros_by_load import zeros_by_load
+from rig.analysis.tracing.residual.zeros_by_speed import zeros_by_speed
+from rig.analysis.tracing.residual.zeros_by_way import zeros_by_way
 from rig.analysis.tracing.runs.cannot import see_little
 from rig.analysis.tracing.runs.recording import read_by_any
 from rig.analysis.tracing.selection.asked import Asked

@@ -9,11 +9,11 @@ from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution, design, fit
 from rig.analysis.tracing.free_form.along_another import along_another
 from rig.analysis.tracing.prepared import Prepared
-from rig.analysis.tracing.rest.hidden_order import hidden_order
-from rig.analysis.tracing.rest.home import WHERE_IT_TURNS_BACK, Home
-from rig.analysis.tracing.rest.in_the_floor import as_runs_begin, in_the_floor
-from rig.analysis.tracing.rest.joined import loudness
-from rig.analysis.tracing.rest.unknown import home
+from rig.analysis.tracing.residual.hidden_order import hidden_order
+from rig.analysis.tracing.residual.home import WHERE_IT_TURNS_BACK, Home
+from rig.analysis.tracing.residual.in_the_floor import as_runs_begin, in_the_floor
+from rig.analysis.tracing.residual.joined import loudness
+from rig.analysis.tracing.residual.unknown import home
 from rig.analysis.tracing.thresholds import LITTLE, QUIET
 from rig.model.effect import Array
 

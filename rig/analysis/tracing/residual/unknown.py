@@ -10,16 +10,16 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import ORDERS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.binned import Halves, folds, own_excess, score, straightened
-from rig.analysis.tracing.rest.coordinates import FINE, INDICES, JOINT, LATE
-from rig.analysis.tracing.rest.home import Home, plainest
-from rig.analysis.tracing.rest.joined import Rest, loudness, rest
-from rig.analysis.tracing.rest.lines import BY_THE_CLOCK, SENSES, best_order, by_the_clock, by_the_day, line
-from rig.analysis.tracing.rest.readings import accelerating, drifting, in_bins, in_columns, powers, share, swelling
-from rig.analysis.tracing.rest.settling import settled
-from rig.analysis.tracing.rest.sudden import since, turned_since
-from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER, of_the_output
-from rig.analysis.tracing.rest.worn import worn_off
+from rig.analysis.tracing.residual.binned import Halves, folds, own_excess, score, straightened
+from rig.analysis.tracing.residual.coordinates import FINE, INDICES, JOINT, LATE
+from rig.analysis.tracing.residual.home import Home, plainest
+from rig.analysis.tracing.residual.joined import Rest, loudness, rest
+from rig.analysis.tracing.residual.lines import BY_THE_CLOCK, SENSES, best_order, by_the_clock, by_the_day, line
+from rig.analysis.tracing.residual.readings import accelerating, drifting, in_bins, in_columns, powers, share, swelling
+from rig.analysis.tracing.residual.settling import settled
+from rig.analysis.tracing.residual.sudden import since, turned_since
+from rig.analysis.tracing.residual.whose_order import WHOLE_ORDER, of_the_output
+from rig.analysis.tracing.residual.worn import worn_off
 from rig.analysis.tracing.thresholds import ALL, PLAIN_ENOUGH
 from rig.model.effect import Array
 

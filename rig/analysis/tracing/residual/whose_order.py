@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Rest
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Rest
 
 WHOLE_ORDER: Final = 0.05  # how near a whole number: chance is there once in ten times
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from rig.analysis.tracing.rest.joined import Index, Rest
-from rig.analysis.tracing.rest.past import LEAKS, WIDTHS, behind, relaxing, since_turned, slid, summed
+from rig.analysis.tracing.residual.joined import Index, Rest
+from rig.analysis.tracing.residual.past import LEAKS, WIDTHS, behind, relaxing, since_turned, slid, summed
 from rig.core.units import TURN
 from rig.model.effect import Array
 

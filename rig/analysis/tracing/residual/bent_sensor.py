@@ -14,7 +14,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import of_effects, offset
-from rig.analysis.tracing.rest.drifting_zeros import free
+from rig.analysis.tracing.residual.drifting_zeros import free
 from rig.model.effect import MEASURED, Array
 
 SPRINGS: Final = frozenset({"nonlinear_stiffness", "lost_motion"})

@@ -7,11 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.rest.binned import Halves
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.past import since_turned, slid
-from rig.analysis.tracing.rest.readings import in_columns, share
+from rig.analysis.tracing.residual.binned import Halves
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.past import since_turned, slid
+from rig.analysis.tracing.residual.readings import in_columns, share
 from rig.model.effect import Array
 
 REACHES: Final = (2.0, 5.0, 12.0, 30.0, 80.0)  # rad of the motor within which all but a third of it is gone

@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.joined import loudness, rest
-from rig.analysis.tracing.rest.shares import COORDINATES, PAIRS, shares
+from rig.analysis.tracing.residual.joined import loudness, rest
+from rig.analysis.tracing.residual.shares import COORDINATES, PAIRS, shares
 from rig.model.effect import Array
 
 SOME: Final = 0.3  # share of the excess that a coordinate must predict

@@ -16,7 +16,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import by_the_torque_sensor, zero
-from rig.analysis.tracing.rest.drifting_zeros import foretold
+from rig.analysis.tracing.residual.drifting_zeros import foretold
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.quantiles import Z95
 from rig.core.units import RPM

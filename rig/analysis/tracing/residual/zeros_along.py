@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import zero
-from rig.analysis.tracing.rest.drifting_zeros import LEFT, PLAINER, constants, falling, foretold, times
+from rig.analysis.tracing.residual.drifting_zeros import LEFT, PLAINER, constants, falling, foretold, times
 from rig.model.effect import Array
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import zero
-from rig.analysis.tracing.rest.drifting_zeros import (
+from rig.analysis.tracing.residual.drifting_zeros import (
     PLAINER,
     SENSOR,
     both_free,

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_matrix
 
-from rig.analysis.tracing.rest.joined import Index, Rest
+from rig.analysis.tracing.residual.joined import Index, Rest
 from rig.model.effect import Array
 
 FEWEST = 8  # rows of a bin: of fewer the mean is noise

@@ -15,10 +15,10 @@ import numpy as np
 from scipy.special import fdtrc
 
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.coordinates import both
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Index, Rest, rest
-from rig.analysis.tracing.rest.readings import in_bins
+from rig.analysis.tracing.residual.coordinates import both
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Index, Rest, rest
+from rig.analysis.tracing.residual.readings import in_bins
 from rig.model.effect import Array
 
 APART: Final = 1.1  # of two speeds: runs at one speed differ by less

@@ -12,9 +12,9 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.noise import Measured
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Rest, rest
-from rig.analysis.tracing.rest.readings import waves
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Rest, rest
+from rig.analysis.tracing.residual.readings import waves
 from rig.analysis.tracing.thresholds import LOCKS_DIFFER, PLAIN_ENOUGH
 from rig.core.units import TURN
 from rig.model.effect import Array

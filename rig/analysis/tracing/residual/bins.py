@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.rest.joined import Index, Rest
+from rig.analysis.tracing.residual.joined import Index, Rest
 from rig.core.units import TURN
 from rig.model.effect import Array
 

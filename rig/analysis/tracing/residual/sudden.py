@@ -7,10 +7,10 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.rest.binned import Halves, solved
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Index, Rest
-from rig.analysis.tracing.rest.readings import in_columns, share
+from rig.analysis.tracing.residual.binned import Halves, solved
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Index, Rest
+from rig.analysis.tracing.residual.readings import in_columns, share
 from rig.model.effect import Array
 
 LARGEST: Final = (1, 2, 4)  # orders of a wave generator that stand out: eccentricity, lobes, and what both gears make

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial.chebyshev import chebvander
 
-from rig.analysis.tracing.rest.binned import Halves, added, binned, solved
-from rig.analysis.tracing.rest.joined import Index, Rest
+from rig.analysis.tracing.residual.binned import Halves, added, binned, solved
+from rig.analysis.tracing.residual.joined import Index, Rest
 from rig.model.effect import Array
 
 Rows = npt.NDArray[np.bool_]

@@ -15,9 +15,9 @@ import numpy as np
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import of_the_torque_sensor
-from rig.analysis.tracing.rest.drifting_zeros import both_free
-from rig.analysis.tracing.rest.levels import LEVELS, levels
-from rig.analysis.tracing.rest.zeros_along import along
+from rig.analysis.tracing.residual.drifting_zeros import both_free
+from rig.analysis.tracing.residual.levels import LEVELS, levels
+from rig.analysis.tracing.residual.zeros_along import along
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC
 from rig.model.effect import Array

@@ -6,11 +6,11 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.rest.binned import Halves, folds, score
-from rig.analysis.tracing.rest.bins import BINNED
-from rig.analysis.tracing.rest.coordinates import INDICES
-from rig.analysis.tracing.rest.joined import Index, Rest
-from rig.analysis.tracing.rest.unknown import frequency
+from rig.analysis.tracing.residual.binned import Halves, folds, score
+from rig.analysis.tracing.residual.bins import BINNED
+from rig.analysis.tracing.residual.coordinates import INDICES
+from rig.analysis.tracing.residual.joined import Index, Rest
+from rig.analysis.tracing.residual.unknown import frequency
 from rig.model.effect import Array
 
 SPAN: Final = 25  # rows either way, 0.2 s: the rate of a torque from row to row is mostly noise

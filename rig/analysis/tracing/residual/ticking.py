@@ -16,8 +16,8 @@ from rig.analysis.tracing.fit.equations import Equations, Key, orthonormal
 from rig.analysis.tracing.floor.interference import around, even_grid
 from rig.analysis.tracing.floor.local import clock
 from rig.analysis.tracing.floor.vibration import sharpened
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.readings import waves
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.readings import waves
 from rig.analysis.tracing.thresholds import LINE, LINE_FREE, LINE_RUNS, LINE_SPEEDS, LOUD_LINE
 from rig.core.units import TURN
 from rig.model.effect import Array

@@ -16,12 +16,12 @@ import numpy as np
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.neighbours import neighbours
-from rig.analysis.tracing.rest.binned import solved
-from rig.analysis.tracing.rest.foretold import unseen_beside
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Rest, rest
-from rig.analysis.tracing.rest.lines import SENSES, SLOWEST, longest
-from rig.analysis.tracing.rest.readings import Reading, in_columns, nothing, powers, waves
+from rig.analysis.tracing.residual.binned import solved
+from rig.analysis.tracing.residual.foretold import unseen_beside
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Rest, rest
+from rig.analysis.tracing.residual.lines import SENSES, SLOWEST, longest
+from rig.analysis.tracing.residual.readings import Reading, in_columns, nothing, powers, waves
 from rig.analysis.tracing.thresholds import FORETOLD, PLAIN_ENOUGH, WANDERS
 from rig.core.units import TURN
 from rig.model.effect import Array

@@ -15,7 +15,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.offsets import of_the_torque_sensor, zero
-from rig.analysis.tracing.rest.drifting_zeros import LEFT, PLAINER, both_free, foretold, rivals
+from rig.analysis.tracing.residual.drifting_zeros import LEFT, PLAINER, both_free, foretold, rivals
 from rig.analysis.tracing.runs.recording import mean_speed
 from rig.core.units import ARCSEC, RPM
 from rig.model.effect import Array

@@ -16,10 +16,10 @@ from scipy.special import fdtrc
 
 from rig.analysis.tracing.fit.channels import CHANNEL
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.for_a_while import BY_CHANCE, LARGE, MOSTLY, UNEVEN, what_a_baseline_takes
-from rig.analysis.tracing.rest.in_the_floor import overtones
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.levels import Runs, left_by_runs
+from rig.analysis.tracing.residual.for_a_while import BY_CHANCE, LARGE, MOSTLY, UNEVEN, what_a_baseline_takes
+from rig.analysis.tracing.residual.in_the_floor import overtones
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.levels import Runs, left_by_runs
 from rig.model.effect import Array
 
 PERIODS: Final = 3.0  # within the campaign at least: a wander comes round twice by chance

@@ -9,11 +9,11 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.rest.binned import Halves
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Rest
-from rig.analysis.tracing.rest.lines import SENSES
-from rig.analysis.tracing.rest.readings import in_columns, share
+from rig.analysis.tracing.residual.binned import Halves
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Rest
+from rig.analysis.tracing.residual.lines import SENSES
+from rig.analysis.tracing.residual.readings import in_columns, share
 from rig.model.effect import Array
 
 CONSTANTS: Final = (0.6, 1.5, 4.0, 8.0, 16.0, 40.0)  # s

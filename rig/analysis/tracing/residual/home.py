@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from rig.analysis.tracing.rest.readings import Reading
+from rig.analysis.tracing.residual.readings import Reading
 from rig.analysis.tracing.thresholds import PLAIN_ENOUGH
 
 SIMPLE: Final[Sequence[str]] = (

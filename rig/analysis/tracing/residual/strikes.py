@@ -13,7 +13,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.floor.local import clock
-from rig.analysis.tracing.rest.bursts import LENGTH, loud_half_seconds
+from rig.analysis.tracing.residual.bursts import LENGTH, loud_half_seconds
 from rig.core.units import TURN
 from rig.model.effect import Array
 

@@ -17,9 +17,9 @@ from scipy.special import fdtrc
 
 from rig.analysis.tracing.fit.channels import CHANNEL
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.drifting_zeros import PLAINER, constants, falling, foretold
-from rig.analysis.tracing.rest.joined import Index, Rest
-from rig.analysis.tracing.rest.levels import Runs, left_by_runs
+from rig.analysis.tracing.residual.drifting_zeros import PLAINER, constants, falling, foretold
+from rig.analysis.tracing.residual.joined import Index, Rest
+from rig.analysis.tracing.residual.levels import Runs, left_by_runs
 from rig.model.effect import Array
 
 UNEVEN: Final = 0.3  # more rows one way than the other, over all: a slow run that ends on its way is as good

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Rest, rest
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Rest, rest
 from rig.model.effect import Array
 
 

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from rig.analysis.tracing.rest.binned import Halves, score
-from rig.analysis.tracing.rest.coordinates import INDICES, both, steps, turned
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.joined import Index, Rest
-from rig.analysis.tracing.rest.readings import in_bins, in_columns, share, waves
+from rig.analysis.tracing.residual.binned import Halves, score
+from rig.analysis.tracing.residual.coordinates import INDICES, both, steps, turned
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.joined import Index, Rest
+from rig.analysis.tracing.residual.readings import in_bins, in_columns, share, waves
 from rig.core.units import TURN
 from rig.model.effect import Array
 

@@ -12,15 +12,15 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.rest.binned import Halves, folds
-from rig.analysis.tracing.rest.foretold import unseen_beside
-from rig.analysis.tracing.rest.home import Home
-from rig.analysis.tracing.rest.in_the_floor import square
-from rig.analysis.tracing.rest.joined import rest
-from rig.analysis.tracing.rest.lines import SENSES, best_order
-from rig.analysis.tracing.rest.readings import in_columns, nothing
-from rig.analysis.tracing.rest.unknown import MOST
-from rig.analysis.tracing.rest.whose_order import WHOLE_ORDER, every_second_turn, ratio_of
+from rig.analysis.tracing.residual.binned import Halves, folds
+from rig.analysis.tracing.residual.foretold import unseen_beside
+from rig.analysis.tracing.residual.home import Home
+from rig.analysis.tracing.residual.in_the_floor import square
+from rig.analysis.tracing.residual.joined import rest
+from rig.analysis.tracing.residual.lines import SENSES, best_order
+from rig.analysis.tracing.residual.readings import in_columns, nothing
+from rig.analysis.tracing.residual.unknown import MOST
+from rig.analysis.tracing.residual.whose_order import WHOLE_ORDER, every_second_turn, ratio_of
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.thresholds import LOUD_LINE
 from rig.model.effect import Array
