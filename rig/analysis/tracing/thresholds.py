@@ -80,7 +80,8 @@ ALIKE: Final = 0.8  # of the evidence of the effect that stands: a look-alike th
 OUTDONE: Final = (
     2.0  # times its evidence another effect must have: of 64 right lone names in five exams none is outdone
 )
-KNOWN: Final = 1 / 3  # of itself, half a 95 % interval: so well a second choice must know its scale, a fit the spring
+# largest half-width of a 95 % interval, relative to its value: of the scale of an effect tried second, of the stiffness
+KNOWN: Final = 1 / 3
 UNKNOWN: Final = 10.0  # of itself: a warming of 12 000 ± 790 000 s explains nothing; true laws had 3 at most
 TRIED: Final = 2  # candidates tried again, each by itself: each costs a selection
 TURNS: Final = 4  # prefixes of what the search found, each selected from anew
@@ -96,7 +97,8 @@ AS_WELL: Final = 1.02  # of what is left: a name without which no more is left i
 AT_THE_FLOOR: Final = 1.0  # of what is left: there is no excess to remove
 WORSE: Final = 1.25  # times: laws fitted again that leave so much more of unseen runs foretell them no more
 MISSING: Final = 1.4  # RMS over floor in a single held-out run: its floor is known to a tenth, its rows are few
-TURNED: Final = 3.5  # the same at reversals beside what was named: three, where it builds up within three samples
+# the same at reversals, beside what was named: friction that builds up within three samples left three floors there
+TURNED: Final = 3.5
 # the same where nothing was found to explain any of it: the floor of one condition is that of one pair
 ALONE: Final = 2.0
 IN_ONE_RUN: Final = 2.5  # RMS over floor of a fitted run that is no noise any more, though unseen runs leave nothing

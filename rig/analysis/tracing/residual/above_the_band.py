@@ -1,9 +1,9 @@
 """Whether orders of the motor that the low-pass takes away stand out in what the model leaves.
 
-A second mode is shaken by the orders of the gear, most where one of them meets it. Of one above what the equations are
-compared at nothing is left in them, or as little as a larger inertia leaves; but an order of the transmission itself is
-the same at every speed, one of the load encoder is an acceleration with the square of the speed, and what a mode makes
-of either is another one.
+A second mode is shaken by the orders of the gear, most where one of them meets it. A mode above the low-pass leaves no
+residual in the equations, or no more than a slightly larger inertia would. But an order of the transmission has one
+amplitude at every speed, and one of the load encoder is an acceleration that grows with the square of the speed: an
+amplitude that does neither is made by a mode.
 """
 
 from __future__ import annotations

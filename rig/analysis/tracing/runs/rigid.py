@@ -1,9 +1,9 @@
 """Campaigns that do not tell a spring: without a torque sensor, under one load, at one speed or too slow.
 
 What winds the gear up is then the load's inertia alone, told by its encoder twice differentiated. At one speed every
-order of it is an order of the kinematic error too, and what else there is of it is the encoder's noise, in which the
-angle foretells itself: with a noise of 0.7 arcsec a gear without any wind-up had 448 ± 34 N·m/rad, and an order 2 of
-25 arcsec in the place of 30.
+order of it is an order of the kinematic error too. The rest is the encoder's noise, which then stands on both sides of
+the regression: with a noise of 0.7 arcsec a gear without any wind-up had 448 ± 34 N·m/rad, and an order 2 of 25 arcsec
+in the place of 30.
 """
 
 from __future__ import annotations

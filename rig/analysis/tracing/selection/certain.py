@@ -18,11 +18,11 @@ from rig.model.effect import Array
 
 
 def is_certain(selected: Selected, floors: HeldOut) -> bool:
-    """Whether what the search found where nothing is above the `floors` may be said all the same: they are measured on
-    few repeats, and can be too high. Every name must be large and its size known, or repeats vouch for it, of one size
-    in all runs and what it acts on must be explained, and nothing unnamed be needed beside it, by those floors: by the
-    ones that are measured beside it small effects of others may stand out. Of one that stands in the means of runs, of
-    which their rows keep little, it is enough that it foretells those of unseen runs."""
+    """Whether effects may be named though the baseline alone is at the `floors`: measured on few repeats, those can be
+    too high. Every name must (a) be large with a known size, or be confirmed by repeats; (b) have one size in all runs;
+    (c) explain the channels it acts on; (d) need nothing unnamed beside it. (c) and (d) go by the `floors` given, for
+    beside those measured with the effect in the model small effects of others may stand out. Of an effect that shows
+    in the means of runs alone it is enough that it foretells the means of unseen runs."""
     loud = all(is_loud(at, selected.solution, selected.held) for at in (selected.p.held_out, floors))
     plain = selected.scores and not confounders_in(selected.solution) and not loud
     to_see = bool(plain) and all(_is_plain_to_see(selected, score) for score in selected.scores)

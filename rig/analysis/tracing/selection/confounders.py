@@ -37,17 +37,17 @@ from rig.model.effect import Effect, Reach
 
 @dataclass(frozen=True)
 class Confounder:
-    """A law, the coordinate it lives in, what is said of it, effects it is taken for, whether it is searched for by
-    itself as well: not one that a friction of the load would be taken for; a channel whose zero it leaves to every run,
-    or none; and of what its look-alike explains the share that it may fall short by."""
+    """A law without a name, and what is said where it stands."""
 
     effect: Effect
-    coordinate: str
+    coordinate: str  # it lives in
     sentence: str
-    mimics: frozenset[str] = frozenset()
-    searched: bool = True
-    zero_of: str = ""
-    short: float = 0.0
+    mimics: frozenset[str] = (
+        frozenset()
+    )  # effects of the library it is taken for, each of which it is tried in place of
+    searched: bool = True  # for itself as well; not where a friction of the load would be taken for it
+    zero_of: str = ""  # a channel whose zero is every run's own beside it
+    short: float = 0.0  # share of what its look-alike explains that it may explain less
 
 
 CONFOUNDERS: Final = {

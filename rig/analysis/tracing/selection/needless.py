@@ -28,11 +28,10 @@ ROUGHLY: Final = 2.0
 
 
 def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reach) -> Selected:
-    """Without names whose size may as well be zero, or is hardly known beside a name that does more, or whose law may
-    be any beside an unknown rest, unless something is left to explain that is not with them: where few repeats tell
-    the floor, that is no reason for such a name, nor is a single run for one that may be nothing beside others (exam
-    69, case 03: teeth that alias). Of two that stand in for each other either may be the one that can go:
-    the one that does less is tried first."""
+    """Without names whose size may be zero, or is hardly known while another name does more, or whose law may be any
+    while an unexplained residual stands beside it. Such a name stays where something would be left unexplained without
+    it, but not on the word of a floor that few repeats tell, and not for the sake of a single run where it may be
+    nothing beside others. Of two that stand in for each other the one that does less is tried first."""
     effect = {term.name: term.effect for term in selected.solution.design.terms}
     theirs = {key for columns in selected.p.own.made.values() for key in columns}  # where what is a run's own stands
     largest = max((score.overall for score in selected.scores), default=0.0)
