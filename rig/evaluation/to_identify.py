@@ -144,7 +144,7 @@ def _undeclared(found: Sequence[Recording]) -> list[str]:
     from rig.analysis.motion.strokes import find_strokes
     from rig.analysis.turning.weight import other_weight
 
-    told = [(r.name, other_weight(r.source, r.motion, find_strokes(r.motion), r.tau_l)) for r in found if not r.locked]
+    told = [(r.name, other_weight(r.source, find_strokes(r.motion), r.tau_l)) for r in found if not r.locked]
     return [f"{name}: {why}" for name, why in told if why]
 
 

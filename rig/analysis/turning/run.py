@@ -110,7 +110,7 @@ def _with_load(
     if not slow:
         add_speed_figures(found, motion, strokes)
     found.estimates += evenness
-    if weight := other_weight(run, motion, strokes, tau_l):
+    if weight := other_weight(run, strokes, tau_l):
         found.cannot.append(weight)
     if not add_torsion(found, motion, tau_l) and regime_of(run.procedure) is Regime.OTHER:  # the others keep their load
         why = "there is no shaft torque" if tau_l is None else "the shaft torque does not move within a stroke"

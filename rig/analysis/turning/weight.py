@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rig.analysis.findings.result import Array
-from rig.analysis.motion.source import Motion, Source
+from rig.analysis.motion.source import Source
 from rig.analysis.motion.strokes import Stroke
 from rig.core.numbers import number
 
@@ -13,7 +13,7 @@ SHARE = 0.05  # of a weight: masses, pulley radius, gain of the sensor
 ZERO = 0.5  # N·m: sensors that nobody tared read as much with nothing on them
 
 
-def other_weight(run: Source, motion: Motion, strokes: list[Stroke], tau_l: Array | None) -> str:
+def other_weight(run: Source, strokes: list[Stroke], tau_l: Array | None) -> str:
     """That the mean of both directions is not what is said to hang there; "" where it is, or one direction is missing.
 
     Friction turns its sign with the direction, and a weight does not.

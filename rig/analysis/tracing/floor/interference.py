@@ -78,7 +78,7 @@ def find_interference(eq: Equations, e: Mapping[Key, Array], unseen: Mapping[Key
     that uses it: the channel where it is loudest is the one told, all are rid of it.
     """
     keys = sorted((k for k in e if k[1] in WHOLE and not eq.runs[k[0]].locked), key=lambda k: -e[k].size)
-    tracked = dict(zip(keys, each(lambda k: _track(*even_grid(eq, k, e[k])), keys), strict=True))
+    tracked = dict(zip(keys, each(lambda k: _track(*even_grid(eq, k, e[k])[:2]), keys), strict=True))
     tracks = {k: t for k in e if (t := tracked.get(k)) is not None}
     found = [line for c in WHOLE if (line := _in_channel(eq, e, unseen, c, tracks)) is not None]
     if not found:
@@ -130,7 +130,7 @@ def even_grid(eq: Equations, key: Key, e: Array) -> tuple[Array, float, npt.NDAr
     return on_even_grid(clock(eq, key), e)
 
 
-def _track(even: Array, dt: float, place: npt.NDArray[np.int64]) -> _Track | None:
+def _track(even: Array, dt: float) -> _Track | None:
     n = min(int(WINDOW / dt), 2 * even.size // (FEWEST + 1))
     if n * dt < SHORTEST:
         return None

@@ -15,11 +15,11 @@ from rig.analysis.tracing.free_form.factors import (
     motor_waves,
     past_torque,
     remembering,
-    times,
     turned,
     turned_each_way,
 )
 from rig.analysis.tracing.free_form.ranges import Ranges
+from rig.analysis.tracing.residual.products import times
 from rig.model.effect import Array, Signals
 
 HATS: Final = 8  # over a range, times what a form is finer; over a surface half of them each way

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.residual.past import LEAKS, WIDTHS, behind, relaxing, since_turned
+from rig.analysis.tracing.residual.products import times
 from rig.model.effect import Array, Signals
 from rig.model.waves import powers
 
@@ -92,8 +93,3 @@ def past_torque(s: Signals) -> Array:
     torque, run = known(s.torque), np.zeros(s.t.size)
     plays = [behind(torque, run, width) for width in WIDTHS]
     return np.stack([*plays, *(relaxing(torque, run, s.dt, leak) for leak in LEAKS)], 1)
-
-
-def times(a: Array, b: Array) -> Array:
-    """Every column of the one times every column of the other, (n, k·m)."""
-    return np.asarray((a[:, :, None] * b[:, None, :]).reshape(a.shape[0], -1))

@@ -9,10 +9,11 @@ import numpy as np
 
 from rig.analysis.tracing.fit.channels import ORDERS
 from rig.analysis.tracing.free_form.along import ALONE, Along, along
-from rig.analysis.tracing.free_form.factors import known, load_waves, motor_waves, remembering, times
+from rig.analysis.tracing.free_form.factors import known, load_waves, motor_waves, remembering
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.free_form.ranges import Ranges
 from rig.analysis.tracing.nameless.loops import way_of_the_output
+from rig.analysis.tracing.residual.products import times
 from rig.model.effect import Array, Port, Signals
 
 PRODUCT: Final = 6  # orders of an angle times a factor, times what a form is finer

@@ -80,7 +80,7 @@ def _simulated(
     here = keep[rows.keep.nonzero()[0][rows.keep.nonzero()[0] < count]]  # of the rows that are compared at all
     measured, theta = rows.y[: here.size][here], rows.theta_m[: here.size][here]
     columns = [m[keep] for m in made if m is not None]
-    before, after, seen = (_own_out(p, key, x, keep, here) / ARCSEC for x in (*columns, measured))
+    before, after, seen = (_own_out(p, key, x, here) / ARCSEC for x in (*columns, measured))
     by_load = _by_load(p, key, left[0], models[0], keep), _by_load(p, key, left[1], models[1], keep)
     return Free(theta, seen, before, after + _vibration(p, run, keep, seen - after), by_load)
 
@@ -109,7 +109,7 @@ def _vibration(p: Prepared, run: Recording, keep: Array, left: Array) -> Array:
     return np.asarray(z @ np.linalg.lstsq(z, left, rcond=None)[0])
 
 
-def _own_out(p: Prepared, key: Key, x: Array, keep: Array, here: Array) -> Array:
+def _own_out(p: Prepared, key: Key, x: Array, here: Array) -> Array:
     """Less its mean, and without the steps that the run has to itself."""
     own = p.eq.own.get(key)
     z = np.ones((x.size, 1)) if own is None else np.hstack([np.ones((x.size, 1)), own[: here.size][here]])

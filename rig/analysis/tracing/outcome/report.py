@@ -65,7 +65,7 @@ def report(
     confounded = frozenset(name for confounder in confounders_in(s) for name in confounder.mimics)
     words, first = p.own.parameters | dict(fitted), errors(p.eq, p.held_out, before)
     with meanwhile(lambda: _shown(p, empty, s, before, final)) as shown:
-        lives = conclusion.lives_in or (lives_in(p.eq, _left(p, empty), p.floors) if shares else ())
+        lives = conclusion.lives_in or (lives_in(p.eq, _left(empty), p.floors) if shares else ())
         tried = candidates(p, found.ranking, before, conclusion.verdict.effects, confounded)
         tried = dismissed(tried, conclusion.verdict, first.pooled)
         refitted = honest(parameters.inertias_by_what_returns(s, p.split.fitted), fitted_runs)
@@ -155,7 +155,7 @@ def _shown(
     return simulated, curves(p, before, final) | pictures(p, before, final) | curves_of(simulated)
 
 
-def _left(p: Prepared, baseline: Solution) -> dict[Key, Array]:
+def _left(baseline: Solution) -> dict[Key, Array]:
     """What the baseline leaves in the fitted runs, with what each run has to itself."""
     return {key: baseline.residual(key) for key in baseline.keys}
 

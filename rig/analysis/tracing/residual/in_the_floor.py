@@ -21,6 +21,7 @@ from rig.analysis.tracing.residual.foretold import unseen_beside
 from rig.analysis.tracing.residual.home import Home
 from rig.analysis.tracing.residual.joined import Rest, rest
 from rig.analysis.tracing.residual.lines import SENSES, SLOWEST, longest
+from rig.analysis.tracing.residual.products import times
 from rig.analysis.tracing.residual.readings import Reading, in_columns, nothing, powers, waves
 from rig.analysis.tracing.thresholds import FORETOLD, PLAIN_ENOUGH, WANDERS
 from rig.core.units import TURN
@@ -161,7 +162,7 @@ def _waves(r: Rest, sense: Callable[[Rest], Array]) -> tuple[Reading, float] | N
     best = max((means.explained(f, HARMONICS), f) for f in near)[1]  # an overtone would be a radian out by the end
 
     def columns(rest: Rest) -> Array:
-        return _times(overtones(rest.at["time"], best, HARMONICS), _wide(sense(rest)))
+        return times(overtones(rest.at["time"], best, HARMONICS), _wide(sense(rest)))
 
     return in_columns(columns), best
 
@@ -192,7 +193,7 @@ class _Means:
 
     def explained(self, hz: float, harmonics: int = 1) -> float:
         """Sum of squares of rows that a wave of that frequency explains, and its overtones up to so many of them."""
-        z = self._without_zeros(_times(overtones(self.t, hz, harmonics), self.way))
+        z = self._without_zeros(times(overtones(self.t, hz, harmonics), self.way))
         return _explained(z, self.e) * self.rows
 
     def loudest(self, step: float) -> list[float]:
@@ -220,11 +221,6 @@ def overtones(t: Array, hz: float, harmonics: int) -> Array:
 def _wide(x: Array) -> Array:
     """(n, k) of (n,) or (n, k)."""
     return x.reshape(x.shape[0], -1)
-
-
-def _times(a: Array, b: Array) -> Array:
-    """All products of the columns of two, (n, k·m)."""
-    return np.asarray((a[:, :, None] * b[:, None, :]).reshape(a.shape[0], -1))
 
 
 def _scaled(x: Array) -> Array:

@@ -17,6 +17,7 @@ from rig.analysis.tracing.residual.drifting_zeros import drifting_zeros
 from rig.analysis.tracing.residual.gains_of_locks import gains_of_locks
 from rig.analysis.tracing.residual.home import Home
 from rig.analysis.tracing.residual.joined import loudness
+from rig.analysis.tracing.residual.lives import SOME
 from rig.analysis.tracing.residual.uneven_drag import UnevenDrag, uneven_drag
 from rig.analysis.tracing.residual.uneven_friction import UnevenFriction, uneven_friction
 from rig.analysis.tracing.residual.warm_zeros import warm_zeros
@@ -237,7 +238,7 @@ def _along_the_same_turn(rest: Home) -> set[str]:
 
 
 def _lives(where: Sequence[Home]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(h.coordinate for h in where if h.share > 0.3))[:3]
+    return tuple(dict.fromkeys(h.coordinate for h in where if h.share > SOME))[:3]
 
 
 def _settled(asked: Asked, names: tuple[str, ...], before: float, after: float) -> Conclusion:
