@@ -86,7 +86,7 @@ class Instruments:
         return next((device.silent for device in self.devices if device.silent), "")
 
     def start(self) -> None:
-        """From here time counts from zero, and nothing read before is news."""
+        """From here time counts from zero, and nothing read before is news. Called again it counts anew."""
         self.started = self.clock.wait_until(self.clock.now())  # lets a simulated world catch up with a wall clock
         self._last = [NEVER, NEVER, NEVER]
         self.offsets = (LatchOffsets(), LatchOffsets())

@@ -120,9 +120,10 @@ class Loop:
 
     def _energised(self, procedure: Procedure, setting: Setting) -> Ending:
         try:
-            self.instruments.start()
+            self.instruments.start()  # for the events meanwhile
             self.supervisor.act(Act.ENABLE)
             self.instruments.drive.enable(self.setpoints.mode)
+            self.instruments.start()  # a drive may take seconds, and the references of a run go by its time
             self.supervisor.act(Act.RUN, procedure.title())
             self.running = True
             return self._tick(procedure, setting)

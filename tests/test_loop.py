@@ -16,6 +16,7 @@ from rig.core.sample import Mode, Sample, Torque
 from rig.guard import Guard, Trip
 from rig.instruments import Instruments
 from rig.loop import Ending, Loop
+from rig.procedures.jog import Jog
 from rig.process.interrupts import Interrupts
 from rig.supervisor import PRESS, UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
@@ -370,6 +371,22 @@ def test_a_drive_that_refuses_to_enable_is_never_commanded() -> None:
         bench.run()
     assert bench.sink.rows == []
     assert bench.torque_free()
+
+
+def test_time_counts_from_when_the_drive_was_enabled_however_long_it_took() -> None:
+    """A reference of absolute time was 0.8 s away at the first tick."""
+    bench, jog = Bench(), Jog(turns=0.2)
+    enable = bench.instruments.drive.enable
+
+    def slowly(mode: Mode = Mode.TORQUE) -> None:
+        bench.world.clock.wait_until(bench.world.clock.now() + 0.8)
+        enable(mode)
+
+    bench.instruments.drive.enable = slowly  # type: ignore[method-assign]
+    guard = Guard(LIMITS, jog.envelope(SETTING), 50.0)
+    loop = Loop(bench.instruments, bench.supervisor, guard, bench.sink, bench.interrupts, bench.timing)
+    assert loop.run(jog, SETTING).status == "completed"
+    assert bench.sink.rows[0][0].t == pytest.approx(0.001)
 
 
 def test_a_stop_asked_before_the_start_energises_nothing() -> None:

@@ -77,8 +77,9 @@ def as_expected(cause: Cause, phase: Phase, ended: str) -> list[str]:
     """What is wrong with a run that `ended` so, in words; nothing where that is how it has to end."""
     good = {"completed", "stopped"}
     if cause.expected is Expected.GO_ON:
-        # before a run starts, being refused is always right
-        fine = ended in good or phase.name in ("idle", "enabling") or phase.name in cause.or_stops
+        # before a run starts, being refused is always right; to trip on what is harmless is not
+        early = ended == "refused" and phase.name in ("idle", "enabling")
+        fine = ended in good or early or phase.name in cause.or_stops
         return [] if fine else [f"the run was {ended}, expected to go on"]
     if phase.name in cause.unseen:
         return []
