@@ -49,6 +49,14 @@ def test_a_run_that_cannot_begin_closes_its_folder_and_leaves_no_recorder(
     assert "no room for it" in manifest["exit_reason"]
 
 
+def test_a_hold_asked_for_while_nothing_ran_holds_no_run(session: Session) -> None:
+    """The next run held at its first tick, and did nothing."""
+    session.interrupts.hold()
+    done = session.run(Standstill(0.5))
+    assert done.ending.status == "completed"
+    assert any("while nothing ran" in event["text"] for event in read_events(done.folder))
+
+
 @pytest.mark.parametrize(
     ("watchdog", "is_said"), [(None, False), (Watchdog("time-out, 100 ms", is_proven=True), False), (Watchdog(), True)]
 )

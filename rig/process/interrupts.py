@@ -66,6 +66,11 @@ class Interrupts:
         """Bring the motor to rest and hold it there, torque on; what a key calls."""
         self.held = True
 
+    def let_hold_go(self) -> bool:
+        """A run is accepted: a hold asked for while nothing ran is over. True when there was one that is."""
+        asked, self.held = self.held, False
+        return asked and not self.held  # the page's lasts as long as the act it was pressed in
+
     def stop(self) -> None:
         """What a key calls; asked for twice it is still a stop, and after a halt it is none."""
         self._stop_key = True

@@ -231,6 +231,8 @@ class Session:
 
     def _run(self, procedure: Procedure, root: Path, watch: Watch) -> Done:
         self.folder = None
+        if self.interrupts.let_hold_go():
+            self.log.event("note", "a hold was asked for while nothing ran: there was nothing to hold")
         self.check(procedure)
         if (told := self._wound_up()) is not None:
             self._warn(told)
