@@ -71,6 +71,7 @@ class Cia402(Drive):
         self._last = DriveReading(NEVER, NAN, 0, NAN)
         self._scale = Scale(place)
         self._written = NEVER  # s, when
+        self._carried = 0.0  # the setpoint sent last: the drive goes by it until another comes
 
     # ---- connecting ----
 
@@ -167,6 +168,7 @@ class Cia402(Drive):
         self._angle.forget()
         self._first_reading()  # or a statusword from before would pass for a drive that fell out by itself
         self._written = self.bus.clock.now()
+        self._carried = self._scale.position if mode is Mode.POSITION else 0.0
         self._enabled = True
 
     def _change(self, mode: Mode) -> None:
@@ -235,16 +237,19 @@ class Cia402(Drive):
         self.trouble = self.trouble or why  # the first cause stays
 
     def write(self, setpoint: Setpoint) -> float:
-        """What fits the frame, within the limits. Nothing is sent unless it is enabled for that kind of setpoint."""
-        nothing = NAN if KINDS[type(setpoint)] is Mode.POSITION else 0.0
+        """What fits the frame, within the limits; the one before where this could not be sent. Nothing is sent unless
+        it is enabled for that kind of setpoint.
+        """
         if not self._enabled or KINDS[type(setpoint)] is not self.mode:
-            return nothing
+            return NAN if KINDS[type(setpoint)] is Mode.POSITION else 0.0
+        if self.bus.synced - self._last.t > UNANSWERED * self.place.period:
+            return self._carried  # a drive that is not heard may not hear: nothing is queued that could reach it later
         now = self.bus.clock.now()
         raw, carried = self._scale.within(self.mode, setpoint[0], now - self._written)
-        if self.bus.synced - self._last.t > UNANSWERED * self.place.period:
-            return nothing  # a drive that is not heard may not hear: nothing is queued that could reach it later
         self._written = now
-        return carried if self._command(ENABLE, raw) else nothing
+        if self._command(ENABLE, raw):
+            self._carried = carried
+        return self._carried
 
     # ---- off ----
 

@@ -58,6 +58,7 @@ class ODrive(Drive):
         self._turns = NAN
         self._enabled = self._connected = False
         self._saturated = 0
+        self._carried = 0.0  # N·m, sent last: the axis goes by it until another comes
         self._looked = NEVER  # s, when readings were last looked for
         self._last = DriveReading(NEVER, NAN, 0, NAN)
 
@@ -158,6 +159,7 @@ class ODrive(Drive):
         self.axis.forgives = 0
         self.trouble = ""
         self._first_reading()
+        self._carried = 0.0
         self._enabled = True
 
     def _closed_loop(self) -> None:
@@ -222,7 +224,9 @@ class ODrive(Drive):
         self.trouble = self.trouble or why  # the first cause stays
 
     def write(self, setpoint: Setpoint) -> float:
-        """The torque within the limit, as f32 carries it [N·m]; zero unless enabled."""
+        """The torque within the limit, as f32 carries it [N·m]; the one before where this one could not be sent, zero
+        unless enabled.
+        """
         if not self._enabled:
             return 0.0
         limit = self.place.torque_limit
@@ -230,12 +234,11 @@ class ODrive(Drive):
         tau = min(max(asked, -limit), limit)
         self._saturated = int(Flag.SATURATED_DRIVE) if abs(asked) > limit else 0
         if self._looked - self._last.t > UNANSWERED * self.place.period:
-            return 0.0  # a drive that is not heard may not hear: nothing is queued that could reach it later
+            return self._carried  # a drive that is not heard may not hear: nothing is queued that could reach it later
         data = cs.encode_torque(self._direction * tau)
-        if not self.axis.send(cs.SET_TORQUE, data):
-            return 0.0
-        carried: float = struct.unpack("<f", data)[0]
-        return float(self._direction * carried)
+        if self.axis.send(cs.SET_TORQUE, data):
+            self._carried = self._direction * float(struct.unpack("<f", data)[0])
+        return self._carried
 
     def cut(self) -> None:
         """Idle and zero torque at once. Never raises."""
