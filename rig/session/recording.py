@@ -20,6 +20,7 @@ from rig.loop import Ending, Loop
 from rig.process.interrupts import Interrupts
 from rig.recorder import Recorder
 from rig.runfile.finalise import finalise
+from rig.session.behind import PATIENCE
 from rig.session.done import Done, Watch
 from rig.session.log import SessionLog
 from rig.session.observer import Begun, Observer
@@ -107,9 +108,11 @@ class Recording:
             if recorder is not None:
                 with contextlib.suppress(RecorderError):
                     recorder.close()
-            self.log.close()  # its hash is taken next: nothing may be added after
+            whole = self.log.close()  # its hash is taken next: nothing may be added after
             summary = self.timing.summary()
             closed = finalise(folder, ending.status, ending.reason, timing=summary, expected_rows=rows, **facts)
         except HdrigError as error:
             return f"{error}; hdrig recover {folder} tries again"
-        return f"{closed.lost} of {rows} rows of {folder} are lost" if closed.lost else ""
+        lost = f"{closed.lost} of {rows} rows of {folder} are lost" if closed.lost else ""
+        late = "" if whole else f"the last events of {folder} are missing: its disk did not take them in {PATIENCE:g} s"
+        return "; ".join(filter(None, (lost, late)))
