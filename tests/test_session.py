@@ -49,6 +49,18 @@ def test_a_run_that_cannot_begin_closes_its_folder_and_leaves_no_recorder(
     assert "no room for it" in manifest["exit_reason"]
 
 
+def test_an_observer_that_breaks_leaves_no_run_open(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("the line is gone")
+
+    monkeypatch.setattr(Observer, "ended", broken)
+    with pytest.raises(RuntimeError, match="the line is gone"):
+        session.run(Standstill(0.5))
+    assert session.folder is not None
+    manifest = json.loads((session.folder / "manifest.json").read_text())
+    assert (manifest["status"], manifest["rows"]) == ("completed", 500)
+
+
 def test_a_hold_asked_for_while_nothing_ran_holds_no_run(session: Session) -> None:
     """The next run held at its first tick, and did nothing."""
     session.interrupts.hold()
