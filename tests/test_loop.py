@@ -395,6 +395,22 @@ def test_a_drive_that_refuses_to_enable_is_never_commanded() -> None:
     assert bench.torque_free()
 
 
+def test_a_device_that_breaks_as_it_is_opened_or_closed_leaves_no_other_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench, closed = Bench(), []
+    sensor = bench.instruments.torque_sensor
+
+    def broken() -> None:
+        raise RuntimeError("a bug of a driver")
+
+    monkeypatch.setattr(sensor, "connect", broken)
+    monkeypatch.setattr(bench.instruments.load_encoder, "close", broken)
+    monkeypatch.setattr(sensor, "close", lambda: closed.append("torque sensor"))
+    with pytest.raises(RuntimeError, match="a bug of a driver"):
+        bench.instruments.connect()
+    assert bench.world.history == ["halt", "close"]  # of the drive, its torque off first
+    assert closed == ["torque sensor"]
+
+
 def test_time_counts_from_when_the_drive_was_enabled_however_long_it_took() -> None:
     """A reference of absolute time was 0.8 s away at the first tick."""
     bench, jog = Bench(), Jog(turns=0.2)

@@ -61,6 +61,23 @@ def test_an_observer_that_breaks_leaves_no_run_open(session: Session, monkeypatc
     assert (manifest["status"], manifest["rows"]) == ("completed", 500)
 
 
+def test_an_observer_that_breaks_as_a_bench_is_connected_leaves_no_device_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("the line is gone")
+
+    closed: list[Instruments] = []
+    monkeypatch.setattr(Observer, "event", broken)
+    monkeypatch.setattr(Instruments, "close", lambda self: closed.append(self))
+    with (
+        pytest.raises(RuntimeError, match="the line is gone"),
+        Session(read("twin"), "virtual", tmp_path, Interrupts()),
+    ):
+        pass
+    assert len(closed) == 1
+
+
 def test_a_hold_asked_for_while_nothing_ran_holds_no_run(session: Session) -> None:
     """The next run held at its first tick, and did nothing."""
     session.interrupts.hold()
