@@ -1,4 +1,5 @@
-"""What each act does, once it is accepted. Anything that raises HdrigError is told to the page as refused."""
+"""What each act does, once it is accepted. What raises HdrigError is told to the page as refused, any other error
+as a defect of ours."""
 
 from __future__ import annotations
 
@@ -8,7 +9,7 @@ from typing import Any
 from rig.bench import Bench, ClockName, read
 from rig.campaign.clear_of_resonance import refuse_resonance
 from rig.campaign.run import to_bare
-from rig.core.errors import HdrigError, UsageError
+from rig.core.errors import UsageError
 from rig.core.operator import FreeOutput, LockOutput
 from rig.core.procedure import Procedure
 from rig.doctor import CHECKS
@@ -31,7 +32,7 @@ def connect(station: Station, message: Mapping[str, Any]) -> None:
     session = Session(bench, clock, station.root, station.panel, observer=station.teller)
     try:
         station.stack.enter_context(session)
-    except HdrigError:
+    except Exception:
         station.disconnect()
         raise
     station.connected(session)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from rig.instruments import Instruments
 from rig.live.switches import Switches
 from rig.station.channel import Channel
 from rig.station.interrupts import Panel
 from rig.station.jobs import JOBS
 from rig.station.station import Station
+from rig.supervisor import State
 
 
 @pytest.fixture
@@ -44,3 +46,33 @@ def test_a_refused_act_is_told_before_the_station_is_free_again(line: tuple[Stat
     free = said.index(("status", ""))
     assert ("event", "refused") in said[:free], said
     assert ("reply", "") in said[:free], said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("confirms", [True, False])
+def test_a_defect_in_an_act_is_a_sentence_and_the_station_keeps_the_bench_without_torque(
+    line: tuple[Station, Channel], monkeypatch: pytest.MonkeyPatch, confirms: bool
+) -> None:
+    """The process ended with a traceback, and the bench was let go."""
+
+    def broken(station: Station, message: Mapping[str, Any]) -> None:
+        station.need().instruments.drive.enable()
+        monkeypatch.setattr(Instruments, "safe", safe)
+        raise ZeroDivisionError("a bug")
+
+    def safe(instruments: Instruments) -> bool:
+        taken_off.append(instruments.drive.halt())
+        return confirms
+
+    station, page = line
+    taken_off: list[bool] = []
+    station.jobs = {**JOBS, "jog": broken}
+    station.take({"act": "connect", "id": "1", "until": None, "bench": "twin", "clock": "virtual"})
+    page.receive(1.0)
+    station.take({"act": "jog", "id": "2", "until": None})
+    said = [m["event"]["text"] for m in page.receive(1.0) if m["kind"] == "event" and m["event"]["kind"] == "error"]
+    assert said[-1].startswith("internal error, please report it: ZeroDivisionError: a bug in ")
+    assert ("TORQUE OFF NOT CONFIRMED" in said[-1]) is not confirms
+    assert taken_off == [True]
+    assert station.need().supervisor.state is (State.CONNECTED if confirms else State.FAULT)
+    station.attend()  # it goes on
