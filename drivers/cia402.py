@@ -15,6 +15,7 @@ from drivers.limits402 import set_limits
 from drivers.mapping import Mapped
 from drivers.modes402 import UNDECIDED, choose, rest_all, shown, shows
 from drivers.node import Node
+from drivers.on_can import OnCan
 from drivers.pdo import Inputs, Outputs
 from drivers.profile402 import DISABLE, ENABLE, SHUTDOWN, SWITCH_ON, speed_unit, state_of
 from drivers.scales402 import compare_scales
@@ -25,7 +26,7 @@ from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
 from rig.core.clock import NEVER, is_never
-from rig.core.devices import Drive, DriveReading, Identity, Watchdog
+from rig.core.devices import DriveReading, Identity, Watchdog
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
 from rig.core.units import TURN
@@ -45,10 +46,9 @@ BEHIND = {Mode.TORQUE: LIMITED, Mode.VELOCITY: LIMITED, Mode.POSITION: LIMITED |
 KINDS: dict[type[Setpoint], Mode] = {Torque: Mode.TORQUE, Velocity: Mode.VELOCITY, Position: Mode.POSITION}
 
 
-class Cia402(Drive):
+class Cia402(OnCan):
     """A drive at `node` on `bus`; the numbers of its object dictionary have to agree with the bench file's."""
 
-    name = "drive"
     keys: ClassVar[tuple[str, ...]] = ("bus", "node", "direction", "watchdog", "torque_constant", "rated_step")
     answers: ClassVar[tuple[int, ...]] = (5, 4)  # data bytes of its frames after a SYNC
     commands: ClassVar[tuple[int, ...]] = (4,)  # of what it is sent a tick; 6 in velocity and position mode
@@ -133,16 +133,6 @@ class Cia402(Drive):
     def silent(self) -> str:
         """Which of its frames, where it tells all there is in several."""
         return self._inputs.silent
-
-    def clear(self) -> None:
-        """Nothing: its fault goes by `reset_fault`."""
-
-    def close(self) -> None:
-        """Torque off, then off the bus."""
-        if self._connected:
-            self.halt()
-        self._connected = False
-        self.bus.close()
 
     # ---- states ----
 

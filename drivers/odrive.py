@@ -14,12 +14,13 @@ from typing import ClassVar
 
 from drivers import cansimple as cs
 from drivers.axis import Axis
+from drivers.on_can import OnCan
 from drivers.silence import UNANSWERED, missing
 from drivers.unwrap import LATE
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
 from rig.core.clock import NEVER
-from rig.core.devices import Drive, DriveReading, Identity, Watchdog, torque_only
+from rig.core.devices import DriveReading, Identity, Watchdog, torque_only
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Setpoint
 from rig.core.units import TURN
@@ -32,14 +33,13 @@ CONFIRM = 0.5  # s for a heartbeat that says it is off; the frame that takes the
 SPEED_MARGIN = 1.1  # the axis limits speed by itself a little above the guard's limit: the guard comes first
 
 
-class ODrive(Drive):
+class ODrive(OnCan):
     """An axis of `node` on `bus`.
 
     Options: `torque_constant` N·m/A, needed where the firmware (up to 0.5) tells a current and no torque; `watchdog` s,
     only where it was set up in the axis with the maker's tool: CANSimple can neither set it up nor read it back.
     """
 
-    name = "drive"
     keys: ClassVar[tuple[str, ...]] = ("bus", "node", "direction", "watchdog", "torque_constant")
     answers: ClassVar[tuple[int, ...]] = (8, 8)  # data bytes of the frames read in a tick
     commands: ClassVar[tuple[int, ...]] = (4, 0, 0)  # torque, and two remote frames that ask for readings
@@ -131,16 +131,6 @@ class ODrive(Drive):
         heard = {_message(self._motion): motion.arrived, _message(self._effort): effort.arrived}
         told = missing(heard, self.place.period)
         return f"of {self.axis.who} {told}" if told else ""
-
-    def clear(self) -> None:
-        """Nothing: its fault goes by `reset_fault`."""
-
-    def close(self) -> None:
-        """Torque off, then off the bus."""
-        if self._connected:
-            self.halt()
-        self._connected = False
-        self.bus.close()
 
     def enable(self, mode: Mode = Mode.TORQUE) -> None:
         """Torque control with zero torque, closed loop. Raises NotReady: where it stuck, with its errors in words."""

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from rig.control.pid import Pid
 from rig.control.profile import Ramp
+from rig.control.spin import ACCELERATION
 from rig.core.procedure import Setting, Steps
 from rig.core.sample import Torque
-
-ACCELERATION = 20.0  # rad/s²: 600 rpm to rest in 3 s
 
 
 def hold(setting: Setting) -> Steps:

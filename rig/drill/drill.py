@@ -54,7 +54,7 @@ def drill(cause: Cause, phase: Phase, made: Callable[[], DrillRig] = CanopenRig)
         reaction = max(commands, default=since) - since
         allowed = cause.detection + PERIODS * rig.bench.setting(lambda text: None).period + 1e-9
         over = rig.wire.now()
-        wrong = [*as_expected(cause, phase, ended), *_in_time(cause, phase, ended, reaction, allowed)]
+        wrong = [*as_expected(cause, phase, ended), *_in_time(cause, phase, reaction, allowed)]
         wrong += _rows_kept(rig, since) if phase.name not in ("idle", "enabling") else []
         rig.wire.wait_until(over + AFTERWARDS)
         wrong += _stays_off(rig, over, ended)
@@ -86,7 +86,7 @@ def as_expected(cause: Cause, phase: Phase, ended: str) -> list[str]:
     return [] if ended in ("tripped", "refused") else [f"the run was {ended}, expected a trip"]
 
 
-def _in_time(cause: Cause, phase: Phase, ended: str, reaction: float, allowed: float) -> list[str]:
+def _in_time(cause: Cause, phase: Phase, reaction: float, allowed: float) -> list[str]:
     if cause.expected is Expected.GO_ON or phase.name in cause.unseen or phase.name in ("idle", "enabling"):
         return []
     if reaction <= allowed:

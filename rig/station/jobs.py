@@ -37,9 +37,8 @@ def connect(station: Station, message: Mapping[str, Any]) -> None:
         station.disconnect()
         raise
     station.connected(session)
-    simulated = bench.simulated or any(identity.simulated for identity in session.identities.values())
     station.status.bench = {
-        "name": bench.file.name, "source": str(message.get("bench", "")), "simulated": simulated,
+        "name": bench.file.name, "source": str(message.get("bench", "")), "simulated": session.simulated,
         "gear": bench.file.gear.serial,
         "ratio": bench.file.gear.N, "rate": bench.file.loop.rate, "clock": clock,
         "overrides": [str(x) for x in message.get("overrides") or []],
