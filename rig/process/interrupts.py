@@ -31,8 +31,8 @@ class Interrupts:
     @property
     def count(self) -> int:
         """1 stop, 2 or more halt."""
-        signals, keyed = len(self._heard), self._keyed
-        return keyed if keyed > signals else signals
+        signals = len(self._heard)  # nobody has pressed a key at nearly every tick
+        return max(signals, self._keyed) if self._stop_key or self._halt_key else signals
 
     @count.setter
     def count(self, value: int) -> None:
