@@ -15,6 +15,7 @@ from drivers.limits402 import set_limits
 from drivers.mapping import Mapped
 from drivers.modes402 import UNDECIDED, choose, rest_all, shown, shows
 from drivers.node import Node
+from drivers.on_can import OnCan
 from drivers.pdo import Inputs, Outputs
 from drivers.profile402 import DISABLE, ENABLE, SHUTDOWN, SWITCH_ON, speed_unit, state_of
 from drivers.scales402 import compare_scales
@@ -25,7 +26,7 @@ from drivers.unwrap import Unwrapped
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
 from rig.core.clock import NEVER, is_never
-from rig.core.devices import Drive, DriveReading, Identity, Watchdog
+from rig.core.devices import DriveReading, Identity, Watchdog
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Position, Setpoint, Torque, Velocity
 from rig.core.units import TURN
@@ -45,10 +46,9 @@ BEHIND = {Mode.TORQUE: LIMITED, Mode.VELOCITY: LIMITED, Mode.POSITION: LIMITED |
 KINDS: dict[type[Setpoint], Mode] = {Torque: Mode.TORQUE, Velocity: Mode.VELOCITY, Position: Mode.POSITION}
 
 
-class Cia402(Drive):
+class Cia402(OnCan):
     """A drive at `node` on `bus`; the numbers of its object dictionary have to agree with the bench file's."""
 
-    name = "drive"
     keys: ClassVar[tuple[str, ...]] = ("bus", "node", "direction", "watchdog", "torque_constant", "rated_step")
     answers: ClassVar[tuple[int, ...]] = (5, 4)  # data bytes of its frames after a SYNC
     commands: ClassVar[tuple[int, ...]] = (4,)  # of what it is sent a tick; 6 in velocity and position mode
@@ -71,6 +71,7 @@ class Cia402(Drive):
         self._last = DriveReading(NEVER, NAN, 0, NAN)
         self._scale = Scale(place)
         self._written = NEVER  # s, when
+        self._carried = 0.0  # the setpoint sent last: the drive goes by it until another comes
 
     # ---- connecting ----
 
@@ -133,16 +134,6 @@ class Cia402(Drive):
         """Which of its frames, where it tells all there is in several."""
         return self._inputs.silent
 
-    def clear(self) -> None:
-        """Nothing: its fault goes by `reset_fault`."""
-
-    def close(self) -> None:
-        """Torque off, then off the bus."""
-        if self._connected:
-            self.halt()
-        self._connected = False
-        self.bus.close()
-
     # ---- states ----
 
     def enable(self, mode: Mode = Mode.TORQUE) -> None:
@@ -167,6 +158,7 @@ class Cia402(Drive):
         self._angle.forget()
         self._first_reading()  # or a statusword from before would pass for a drive that fell out by itself
         self._written = self.bus.clock.now()
+        self._carried = self._scale.position if mode is Mode.POSITION else 0.0
         self._enabled = True
 
     def _change(self, mode: Mode) -> None:
@@ -235,16 +227,19 @@ class Cia402(Drive):
         self.trouble = self.trouble or why  # the first cause stays
 
     def write(self, setpoint: Setpoint) -> float:
-        """What fits the frame, within the limits. Nothing is sent unless it is enabled for that kind of setpoint."""
-        nothing = NAN if KINDS[type(setpoint)] is Mode.POSITION else 0.0
+        """What fits the frame, within the limits; the one before where this could not be sent. Nothing is sent unless
+        it is enabled for that kind of setpoint.
+        """
         if not self._enabled or KINDS[type(setpoint)] is not self.mode:
-            return nothing
+            return NAN if KINDS[type(setpoint)] is Mode.POSITION else 0.0
+        if self.bus.synced - self._last.t > UNANSWERED * self.place.period:
+            return self._carried  # a drive that is not heard may not hear: nothing is queued that could reach it later
         now = self.bus.clock.now()
         raw, carried = self._scale.within(self.mode, setpoint[0], now - self._written)
-        if self.bus.synced - self._last.t > UNANSWERED * self.place.period:
-            return nothing  # a drive that is not heard may not hear: nothing is queued that could reach it later
         self._written = now
-        return carried if self._command(ENABLE, raw) else nothing
+        if self._command(ENABLE, raw):
+            self._carried = carried
+        return self._carried
 
     # ---- off ----
 

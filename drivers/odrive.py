@@ -14,12 +14,13 @@ from typing import ClassVar
 
 from drivers import cansimple as cs
 from drivers.axis import Axis
+from drivers.on_can import OnCan
 from drivers.silence import UNANSWERED, missing
 from drivers.unwrap import LATE
 from drivers.wiring import Place, Wiring
 from rig.core.channels import Flag
 from rig.core.clock import NEVER
-from rig.core.devices import Drive, DriveReading, Identity, Watchdog, torque_only
+from rig.core.devices import DriveReading, Identity, Watchdog, torque_only
 from rig.core.errors import NotReady
 from rig.core.sample import NAN, Mode, Setpoint
 from rig.core.units import TURN
@@ -32,14 +33,13 @@ CONFIRM = 0.5  # s for a heartbeat that says it is off; the frame that takes the
 SPEED_MARGIN = 1.1  # the axis limits speed by itself a little above the guard's limit: the guard comes first
 
 
-class ODrive(Drive):
+class ODrive(OnCan):
     """An axis of `node` on `bus`.
 
     Options: `torque_constant` N·m/A, needed where the firmware (up to 0.5) tells a current and no torque; `watchdog` s,
     only where it was set up in the axis with the maker's tool: CANSimple can neither set it up nor read it back.
     """
 
-    name = "drive"
     keys: ClassVar[tuple[str, ...]] = ("bus", "node", "direction", "watchdog", "torque_constant")
     answers: ClassVar[tuple[int, ...]] = (8, 8)  # data bytes of the frames read in a tick
     commands: ClassVar[tuple[int, ...]] = (4, 0, 0)  # torque, and two remote frames that ask for readings
@@ -58,6 +58,7 @@ class ODrive(Drive):
         self._turns = NAN
         self._enabled = self._connected = False
         self._saturated = 0
+        self._carried = 0.0  # N·m, sent last: the axis goes by it until another comes
         self._looked = NEVER  # s, when readings were last looked for
         self._last = DriveReading(NEVER, NAN, 0, NAN)
 
@@ -131,16 +132,6 @@ class ODrive(Drive):
         told = missing(heard, self.place.period)
         return f"of {self.axis.who} {told}" if told else ""
 
-    def clear(self) -> None:
-        """Nothing: its fault goes by `reset_fault`."""
-
-    def close(self) -> None:
-        """Torque off, then off the bus."""
-        if self._connected:
-            self.halt()
-        self._connected = False
-        self.bus.close()
-
     def enable(self, mode: Mode = Mode.TORQUE) -> None:
         """Torque control with zero torque, closed loop. Raises NotReady: where it stuck, with its errors in words."""
         if not self._connected:
@@ -158,6 +149,7 @@ class ODrive(Drive):
         self.axis.forgives = 0
         self.trouble = ""
         self._first_reading()
+        self._carried = 0.0
         self._enabled = True
 
     def _closed_loop(self) -> None:
@@ -222,7 +214,9 @@ class ODrive(Drive):
         self.trouble = self.trouble or why  # the first cause stays
 
     def write(self, setpoint: Setpoint) -> float:
-        """The torque within the limit, as f32 carries it [N·m]; zero unless enabled."""
+        """The torque within the limit, as f32 carries it [N·m]; the one before where this one could not be sent, zero
+        unless enabled.
+        """
         if not self._enabled:
             return 0.0
         limit = self.place.torque_limit
@@ -230,12 +224,11 @@ class ODrive(Drive):
         tau = min(max(asked, -limit), limit)
         self._saturated = int(Flag.SATURATED_DRIVE) if abs(asked) > limit else 0
         if self._looked - self._last.t > UNANSWERED * self.place.period:
-            return 0.0  # a drive that is not heard may not hear: nothing is queued that could reach it later
+            return self._carried  # a drive that is not heard may not hear: nothing is queued that could reach it later
         data = cs.encode_torque(self._direction * tau)
-        if not self.axis.send(cs.SET_TORQUE, data):
-            return 0.0
-        carried: float = struct.unpack("<f", data)[0]
-        return float(self._direction * carried)
+        if self.axis.send(cs.SET_TORQUE, data):
+            self._carried = self._direction * float(struct.unpack("<f", data)[0])
+        return self._carried
 
     def cut(self) -> None:
         """Idle and zero torque at once. Never raises."""

@@ -23,6 +23,7 @@ from rig.core.units import TURN
 
 BAUD = 230_400
 ANSWER = re.compile(rb"([rwsex])([0-9A-Fa-f]{2})([0-9A-Fa-f]{8})(?:\s*([0-9A-Fa-f]{8}))?\s*!?")
+ERRORS = "ex"  # kinds of answers; the value is the error's number in the maker's document
 LONGEST = 40  # bytes of an answer
 PATIENCE = 1.0  # s for an answer
 KIND, MODE, THRESHOLD, INTERVAL, ENCODER, VERSION = 0x00, 0x03, 0x0B, 0x0C, 0x0E, 0x14  # registers
@@ -70,16 +71,22 @@ class Qsb(Encoder):
         return Identity("US Digital QSB", self.port.path, f"{version:08X}")
 
     def _ask(self, command: bytes) -> int:
+        """Raises NotReady: it refuses, or does not answer. An error about another register is one of whatever half a
+        command stood in its buffer, and only told where nothing follows."""
         kind, register = command[:1].lower().decode(), int(command[1:3], 16)
         self.port.write(command + b"\r\n")
-        until = time.monotonic() + PATIENCE
+        until, told = time.monotonic() + PATIENCE, ""
         while time.monotonic() < until:
             for line in self._lines.feed(self.port.read()):
                 answer = decode_answer(line)
                 if answer and answer[0] == kind and answer[1] == register:
                     return answer[2]
+                if answer and answer[0] in ERRORS:
+                    if answer[1] == register:
+                        raise NotReady(f"{self.port.who} refuses {command.decode()} with error {answer[2]}")
+                    told = f", but told of error {answer[2]} in register {answer[1]:02X}"
             time.sleep(0.001)
-        raise NotReady(f"{self.port.who} did not answer {command.decode()} within {PATIENCE:g} s; is it a QSB?")
+        raise NotReady(f"{self.port.who} did not answer {command.decode()} within {PATIENCE:g} s{told}; is it a QSB?")
 
     def read(self) -> AngleReading:
         """The newest count; never waits."""

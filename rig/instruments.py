@@ -11,7 +11,7 @@ from rig.control.filter import SpeedFilter
 from rig.core.channels import Flag
 from rig.core.clock import NEVER, Clock
 from rig.core.devices import Device, Drive, Encoder, Identity, TorqueSensor
-from rig.core.errors import HdrigError, NotReady
+from rig.core.errors import NotReady
 from rig.core.operator import Operator
 from rig.core.sample import NAN, Sample, Setpoint
 from rig.timing.latching import LatchOffsets
@@ -62,12 +62,12 @@ class Instruments:
         )
 
     def connect(self) -> dict[str, Identity]:
-        """Open every device; if one refuses, close those already open. Raises NotReady."""
+        """Open every device; if one refuses or breaks, close those already open. Raises NotReady."""
         found: dict[str, Identity] = {}
         try:
             for device in self.devices:
                 found[device.name] = device.connect()
-        except HdrigError:
+        except BaseException:
             self.close()
             raise
         if any(identity.simulated for identity in found.values()):
@@ -86,7 +86,7 @@ class Instruments:
         return next((device.silent for device in self.devices if device.silent), "")
 
     def start(self) -> None:
-        """From here time counts from zero, and nothing read before is news."""
+        """From here time counts from zero, and nothing read before is news. Called again it counts anew."""
         self.started = self.clock.wait_until(self.clock.now())  # lets a simulated world catch up with a wall clock
         self._last = [NEVER, NEVER, NEVER]
         self.offsets = (LatchOffsets(), LatchOffsets())
@@ -204,7 +204,8 @@ class Instruments:
             return False
 
     def close(self) -> None:
-        """Torque off first, then let go of every device."""
+        """Torque off first, then let go of every device, whatever becomes of another."""
         self.safe()
-        for device in self.devices:
-            device.close()
+        with contextlib.ExitStack() as closing:
+            for device in reversed(self.devices):  # the drive first: the last one in is the first one out
+                closing.callback(device.close)

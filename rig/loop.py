@@ -120,9 +120,10 @@ class Loop:
 
     def _energised(self, procedure: Procedure, setting: Setting) -> Ending:
         try:
-            self.instruments.start()
+            self.instruments.start()  # for the events meanwhile
             self.supervisor.act(Act.ENABLE)
             self.instruments.drive.enable(self.setpoints.mode)
+            self.instruments.start()  # a drive may take seconds, and the references of a run go by its time
             self.supervisor.act(Act.RUN, procedure.title())
             self.running = True
             return self._tick(procedure, setting)
@@ -158,6 +159,8 @@ class Loop:
             if ends > 1:
                 return self._halted(sample, asked)
             if ends or interrupts.held:
+                if not procedure.closes_loop:
+                    return self._let_go(sample, asked, procedure)
                 steps = self._course(steps, procedure, setting)
             try:
                 asked = steps.send(sample)
@@ -194,6 +197,20 @@ class Loop:
         self.instruments.safe()  # before any word about it is written down
         self._last_row(sample, asked)
         return Ending("stopped", f"halted {self.interrupts.who}: torque off at once", Exit.HALTED)
+
+    def _let_go(self, sample: Sample, asked: Setpoint, procedure: Procedure) -> Ending:
+        """A stop, or a hold, of a run that relies on no loop: torque off at once (category 0). Braking and holding are
+        loops, and over a sign that nobody has proven they drive the motor on.
+        """
+        self.instruments.safe()  # before any word about it is written down
+        self._last_row(sample, asked)
+        who, end = self.interrupts.who, "stopped"
+        if not self.interrupts.count:
+            end = "stopped, and not held as asked,"
+            self.interrupts.stop()  # whoever asked for a hold wants nothing more to be started
+        self.supervisor.act(Act.STOP, f"asked {who}: torque off at once")
+        why = f"{end} {who}: torque off at once and no braking, as {procedure.title()} relies on no loop"
+        return Ending("stopped", f"{why}{self._turns_on(sample)}", Exit.STOPPED)
 
     def _ended(self, sample: Sample, asked: Setpoint, finding: Any) -> Ending:
         """The procedure is through, or the motor was brought to rest as the operator asked."""

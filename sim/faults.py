@@ -80,13 +80,6 @@ class Scale(Fault):
         return self.factor * x
 
 
-class Reversed(Scale):
-    """Wired or configured the wrong way round."""
-
-    def __init__(self) -> None:
-        super().__init__(-1.0)
-
-
 @dataclass(frozen=True)
 class Overload(Fault):
     """A torque sensor driven to the end of its range, `sign` +1 or −1."""

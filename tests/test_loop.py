@@ -16,6 +16,8 @@ from rig.core.sample import Mode, Sample, Torque
 from rig.guard import Guard, Trip
 from rig.instruments import Instruments
 from rig.loop import Ending, Loop
+from rig.procedures.jog import Jog
+from rig.procedures.sign_and_scale import SignAndScale
 from rig.process.interrupts import Interrupts
 from rig.supervisor import PRESS, UNCONFIRMED, Act, State, Supervisor
 from rig.timing.ticks import LoopTiming
@@ -194,6 +196,27 @@ def test_a_hold_brings_the_motor_to_rest_and_keeps_it_there_until_a_stop() -> No
     assert bench.torque_free()
 
 
+@pytest.mark.parametrize(
+    ("hold", "said"), [(False, "stopped by the operator"), (True, "stopped, and not held as asked")]
+)
+def test_a_stop_or_a_hold_before_the_signs_are_proven_closes_no_loop(hold: bool, said: str) -> None:
+    """With the motor encoder the wrong way round the brake pushed on what it was to stop, for two seconds."""
+    bench, proof = Bench(), SignAndScale(nudge_deg=90.0)  # far enough for the motor to be moving when it is asked for
+    bench.world.motor_sign, bench.world.drag = -1.0, 0.05
+    bench.world.clock.at[150] = bench.interrupts.hold if hold else bench.interrupts.stop
+    guard = Guard(LIMITS, proof.envelope(SETTING), 50.0)
+    loop = Loop(bench.instruments, bench.supervisor, guard, bench.sink, bench.interrupts, bench.timing)
+    ending = loop.run(proof, SETTING)
+    assert (ending.status, ending.exit) == ("stopped", Exit.STOPPED)
+    assert ending.reason.startswith(said)
+    assert "torque off at once and no braking, as sign-and-scale relies on no loop" in ending.reason
+    assert bench.sink.rows[-1][0].omega_m < -0.5  # it moved, backwards as it seems
+    assert len(bench.sink.rows) < 155
+    assert min(row[2] for row in bench.sink.rows) >= 0.0  # nothing but the nudge
+    assert bench.interrupts.count == 1  # a campaign starts nothing more
+    assert bench.supervisor.state is State.READY
+
+
 def test_a_stop_asked_for_before_a_hold_goes_before_it() -> None:
     bench = Bench()
 
@@ -370,6 +393,38 @@ def test_a_drive_that_refuses_to_enable_is_never_commanded() -> None:
         bench.run()
     assert bench.sink.rows == []
     assert bench.torque_free()
+
+
+def test_a_device_that_breaks_as_it_is_opened_or_closed_leaves_no_other_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench, closed = Bench(), []
+    sensor = bench.instruments.torque_sensor
+
+    def broken() -> None:
+        raise RuntimeError("a bug of a driver")
+
+    monkeypatch.setattr(sensor, "connect", broken)
+    monkeypatch.setattr(bench.instruments.load_encoder, "close", broken)
+    monkeypatch.setattr(sensor, "close", lambda: closed.append("torque sensor"))
+    with pytest.raises(RuntimeError, match="a bug of a driver"):
+        bench.instruments.connect()
+    assert bench.world.history == ["halt", "close"]  # of the drive, its torque off first
+    assert closed == ["torque sensor"]
+
+
+def test_time_counts_from_when_the_drive_was_enabled_however_long_it_took() -> None:
+    """A reference of absolute time was 0.8 s away at the first tick."""
+    bench, jog = Bench(), Jog(turns=0.2)
+    enable = bench.instruments.drive.enable
+
+    def slowly(mode: Mode = Mode.TORQUE) -> None:
+        bench.world.clock.wait_until(bench.world.clock.now() + 0.8)
+        enable(mode)
+
+    bench.instruments.drive.enable = slowly  # type: ignore[method-assign]
+    guard = Guard(LIMITS, jog.envelope(SETTING), 50.0)
+    loop = Loop(bench.instruments, bench.supervisor, guard, bench.sink, bench.interrupts, bench.timing)
+    assert loop.run(jog, SETTING).status == "completed"
+    assert bench.sink.rows[0][0].t == pytest.approx(0.001)
 
 
 def test_a_stop_asked_before_the_start_energises_nothing() -> None:

@@ -49,6 +49,43 @@ def test_a_run_that_cannot_begin_closes_its_folder_and_leaves_no_recorder(
     assert "no room for it" in manifest["exit_reason"]
 
 
+def test_an_observer_that_breaks_leaves_no_run_open(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("the line is gone")
+
+    monkeypatch.setattr(Observer, "ended", broken)
+    with pytest.raises(RuntimeError, match="the line is gone"):
+        session.run(Standstill(0.5))
+    assert session.folder is not None
+    manifest = json.loads((session.folder / "manifest.json").read_text())
+    assert (manifest["status"], manifest["rows"]) == ("completed", 500)
+
+
+def test_an_observer_that_breaks_as_a_bench_is_connected_leaves_no_device_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("the line is gone")
+
+    closed: list[Instruments] = []
+    monkeypatch.setattr(Observer, "event", broken)
+    monkeypatch.setattr(Instruments, "close", lambda self: closed.append(self))
+    with (
+        pytest.raises(RuntimeError, match="the line is gone"),
+        Session(read("twin"), "virtual", tmp_path, Interrupts()),
+    ):
+        pass
+    assert len(closed) == 1
+
+
+def test_a_hold_asked_for_while_nothing_ran_holds_no_run(session: Session) -> None:
+    """The next run held at its first tick, and did nothing."""
+    session.interrupts.hold()
+    done = session.run(Standstill(0.5))
+    assert done.ending.status == "completed"
+    assert any("while nothing ran" in event["text"] for event in read_events(done.folder))
+
+
 @pytest.mark.parametrize(
     ("watchdog", "is_said"), [(None, False), (Watchdog("time-out, 100 ms", is_proven=True), False), (Watchdog(), True)]
 )

@@ -7,9 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from rig.core.errors import RecorderError
+from rig.bench import read
+from rig.core.errors import Ended, RecorderError
+from rig.procedures.standstill import Standstill
+from rig.process.interrupts import Interrupts
 from rig.runfile.events import EventLog, read_events
-from rig.session import behind
+from rig.runfile.verify import verify
+from rig.session import Session, behind, recording
+from rig.session.done import nobody
 from rig.session.log import SessionLog
 from rig.session.observer import Observer
 from rig.supervisor import Act, State
@@ -59,6 +64,23 @@ def test_a_disk_that_stays_away_is_left_when_the_run_is_closed(
         assert not log.close()
     disk.set()
     assert log.close()  # the disk came back after all
+
+
+def test_what_a_disk_takes_after_the_run_was_closed_is_not_added_to_what_was_hashed(
+    tmp_path: Path, disk: threading.Event, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The thread went on with the last events once the disk was back, and the run no longer agreed with its hash."""
+    monkeypatch.setattr(behind, "PATIENCE", 0.05)
+    monkeypatch.setattr(recording, "PATIENCE", 0.05)
+    monkeypatch.setattr(Observer, "begun", lambda self, run: disk.clear() or nobody)
+    with Session(read("twin"), "virtual", tmp_path, Interrupts()) as session:
+        with pytest.raises(Ended, match=r"the last events of .* are missing: its disk did not take them in 0\.05 s"):
+            session.run(Standstill(0.2))
+        (held_up,) = (thread for thread in threading.enumerate() if thread.name == "events")
+        disk.set()
+        held_up.join()
+    assert session.folder is not None
+    assert [finding for finding in verify(session.folder) if finding.level == "error"] == []
 
 
 def test_a_full_disk_keeps_the_events_that_come_after_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,17 +1,7 @@
 """The runs of a folder: listed, compared, followed over time. Reads manifest.json and result.json, writes nothing.
 
-| file | one idea |
-|---|---|
-| row | one run in a list |
-| remembered | what was read from a file, read again only when the file is another |
-| scan | every run below a folder |
-| filter | which of them, in which order |
-| figures | the figures of one run, by the words people use |
-| sameness | which runs are repeats of one another |
-| scatter | how far repeats lie apart, and what is more than that |
-| lacking | which of the runs side by side has not which figure |
-| compare | runs side by side |
-| trend | one figure over days and assemblies |
+`scan` finds rows, `filter` picks among them; `sameness` says which are repeats of one another, and `scatter` how far
+those lie apart. Each module says at its top what it is for.
 """
 
 from rig.catalogue.compare import Comparison, compare

@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from rig.model.effect import Parameter
 
 
-PAGE = "rig.report.trace.page"
-
-
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Options of `hdrig trace`."""
     parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of run folders of one rig")
@@ -50,8 +47,7 @@ def run(args: argparse.Namespace) -> int:
     from rig.analysis.tracing.runs.holdout import refuse_unmatched
     from rig.analysis.tracing.runs.unfinished import refuse_going_on, unfinished
     from rig.analysis.tracing.trace import trace
-    from rig.process.software import software
-    from rig.runfile.manifest import utc_now
+    from rig.evaluation.trace import keep, page_of
 
     target = args.out or args.campaign
     if args.campaign.is_dir() and os.access(args.campaign, os.R_OK | os.X_OK):  # else that is said, not this
@@ -65,20 +61,16 @@ def run(args: argparse.Namespace) -> int:
     with alone_in(target):
         found = trace(args.campaign, args.hold_out, progress())
         tell(found, unfinished(args.campaign))
-        load(PAGE)  # only now: a trace needs all the memory there is, and a page has much to import
-        from rig.report.trace.campaign import provenance
-        from rig.report.trace.page import SWEEP, put, render
+        page = page_of(found, args.campaign)
+        from rig.report.trace.page import SWEEP  # loaded by now, and not before: see there
 
-        # it takes seconds, and a word to stop meanwhile leaves all as it was; from then on the files are of one trace
-        text = render(found, provenance(args.campaign, software(), utc_now()))
         with uninterrupted():
             with writing(target):
-                page = put(target, text)
-                written = write_trace(target / "trace.json", found)
+                written, report = keep(target, found, page)
             if args.json:
                 with writing(args.json, "--json"):
                     write_trace(args.json, found)
-    print(f"written {written}\nreport {page}")
+    print(f"written {written}\nreport {report}")
     if (sweep := target / SWEEP).exists():
         print(f"report of the sweep {sweep}")
     return int(exit_of(found))

@@ -20,6 +20,13 @@ class Pid:
         self.period = period  # s
         self.integral = 0.0  # N·m
 
+    def take_over(self, tau: float, omega_ref: float) -> None:
+        """Go on from the torque `tau` [N·m] there is, at a reference of `omega_ref` rad/s: what the feed-forward gives
+        of it is not given twice.
+        """
+        g = self.gains
+        self.integral = max(-g.integrator_limit, min(g.integrator_limit, tau - g.feedforward * omega_ref))
+
     def step(self, theta_ref: float, omega_ref: float, theta: float, omega: float) -> float:
         """Torque [N·m] for this tick from reference and measurement (rad, rad/s)."""
         g = self.gains

@@ -8,8 +8,9 @@ from abc import ABC, abstractmethod
 from typing import ClassVar, final
 
 from rig.control.brake import brake
-from rig.control.hold import ACCELERATION, hold
+from rig.control.hold import hold
 from rig.control.profile import Ramp
+from rig.control.spin import ACCELERATION
 from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import NAN, Mode, Position, Sample, Setpoint, Torque, Velocity
 

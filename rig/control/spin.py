@@ -53,9 +53,8 @@ def hold_travel(omega: float, seconds: float) -> float:
 
 def slow_down(setting: Setting, sample: Sample, tau: float) -> Steps:
     """From the speed of `sample` to rest along a ramp under the loop, which takes over from the torque `tau` N·m."""
-    gains = setting.control
-    pid, ramp = Pid(gains, setting.period), Ramp(sample.omega_m, 0.0, ACCELERATION)
-    pid.integral = max(-gains.integrator_limit, min(gains.integrator_limit, tau - gains.feedforward * sample.omega_m))
+    pid, ramp = Pid(setting.control, setting.period), Ramp(sample.omega_m, 0.0, ACCELERATION)
+    pid.take_over(tau, sample.omega_m)
     home, begin = sample.theta_m, sample.t
     while (t := sample.t - begin) < ramp.duration:
         offset, omega_ref = ramp.at(t)

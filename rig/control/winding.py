@@ -50,9 +50,8 @@ class Winding:
     __slots__ = ("_keep", "_period", "_pid", "theta_ref", "torque")
 
     def __init__(self, setting: Setting, gain: float, sample: Sample) -> None:
-        gains = stiffer(setting.control, gain)
-        self._pid = Pid(gains, setting.period)
-        self._pid.integral = max(-gains.torque_limit, min(gains.torque_limit, sample.tau_m))
+        self._pid = Pid(stiffer(setting.control, gain), setting.period)
+        self._pid.take_over(sample.tau_m, 0.0)
         self._period = setting.period
         self._keep = SMOOTHING / (SMOOTHING + setting.period)
         self.theta_ref = sample.theta_m  # rad

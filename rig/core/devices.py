@@ -131,8 +131,9 @@ class Drive(Device):
 
     @abstractmethod
     def write(self, setpoint: Setpoint) -> float:
-        """Command it; returns what the frame could carry, in the setpoint's unit. Without effect unless enabled: then
-        a torque or speed is 0, an angle NaN.
+        """Command it; returns what the frame could carry, in the setpoint's unit; where none could be sent, what the
+        one before carried, by which the drive still goes. Without effect unless enabled: then a torque or speed is 0,
+        an angle NaN.
         """
 
     def cut(self) -> None:

@@ -201,8 +201,7 @@ class Ring:
 
     def unlink(self) -> None:
         """Remove the file. Whoever has it mapped keeps what is in it."""
-        with contextlib.suppress(FileNotFoundError):
-            self.path.unlink()
+        self.path.unlink(missing_ok=True)
 
 
 def _owner(folder: Path) -> bytes:

@@ -26,8 +26,13 @@ def ending_in_a_sentence(act: Callable[[], int]) -> int:
         if isinstance(error, FileNotFoundError) and _is_nowhere():
             print("hdrig: the current folder no longer exists; change to one that does", file=sys.stderr)
             return int(Exit.USAGE)
-        print(f"hdrig: internal error, please report it: {_where(error)}", file=sys.stderr)
+        print(f"hdrig: {internal(error)}", file=sys.stderr)
         return int(Exit.INTERNAL)
+
+
+def internal(error: Exception) -> str:
+    """The sentence of an error nobody foresaw."""
+    return f"internal error, please report it: {_where(error)}"
 
 
 def _is_nowhere() -> bool:

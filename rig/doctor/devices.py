@@ -17,12 +17,14 @@ def check_devices(bench: Bench) -> list[Finding]:
         identities = instruments.connect()
     except HdrigError as why:
         return [Finding("devices", Health.BAD, "; ".join(filter(None, (str(why), bench.twin_not_there))))]
-    found = identified(identities)
-    found += [Finding(device.name, Health.DOUBTFUL, told) for device in instruments.devices for told in device.remarks]
-    if instruments.drive.watchdog is not None:
-        found.append(_watchdog(instruments.drive.watchdog))
-    instruments.close()
-    return found
+    try:
+        found = identified(identities)
+        found += [Finding(one.name, Health.DOUBTFUL, told) for one in instruments.devices for told in one.remarks]
+        if instruments.drive.watchdog is not None:
+            found.append(_watchdog(instruments.drive.watchdog))
+        return found
+    finally:
+        instruments.close()
 
 
 def identified(identities: Mapping[str, Identity]) -> list[Finding]:

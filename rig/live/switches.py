@@ -7,7 +7,6 @@ station looks at every tick and says what it has seen. Every counter is one alig
 
 from __future__ import annotations
 
-import contextlib
 import mmap
 import os
 import struct
@@ -135,13 +134,10 @@ class Switches:
 
     def close(self) -> None:
         """Let go of the memory; the file stays. Idempotent."""
-        self._pressed.release()
-        self._seen.release()
-        self._counted.release()
-        self._view.release()
+        for view in (self._pressed, self._seen, self._counted, self._view):
+            view.release()
         self._mapped.close()
 
     def unlink(self) -> None:
         """Remove the file; whoever has it mapped keeps what is in it."""
-        with contextlib.suppress(FileNotFoundError):
-            self.path.unlink()
+        self.path.unlink(missing_ok=True)

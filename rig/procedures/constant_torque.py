@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from rig.core.procedure import Envelope, Procedure, Setting, Steps
-from rig.procedures.open_loop import OpenLoop
+from rig.procedures.open_loop import Pushed
 
 
 @dataclass(frozen=True)
-class ConstantTorque(Procedure):
+class ConstantTorque(Pushed):
     """Find the torque that holds a mean speed, then give exactly that, open loop, and watch      [ghorbel2001, Fig. 11]
 
     No loop corrects anything while it is measured: what the speed does is the gear's doing. In the run the rows of
@@ -24,27 +23,3 @@ class ConstantTorque(Procedure):
     revolutions: int = 60  # of the wave generator, measured open loop
     settle: float = 5.0  # s of constant torque before; the speed settles with J/B, 0.4 s on the paper's rig
     torque: float = field(default=0.0, metadata={"signed": True})  # N·m, sign of the speed; 0: find it
-
-    def __post_init__(self) -> None:
-        _ = self.plan  # refuses what cannot be meant
-
-    @property
-    def plan(self) -> OpenLoop:
-        """The same in SI."""
-        return OpenLoop(self.speed_rpm, self.revolutions, self.settle, self.torque)
-
-    def envelope(self, setting: Setting) -> Envelope:
-        """The speed with what it may overshoot; the torque is what the loop may give while it holds the speed."""
-        return self.plan.envelope(setting)
-
-    def remarks(self, setting: Setting) -> list[str]:
-        """Where a torque that is given takes the motor."""
-        return self.plan.remarks(setting)
-
-    def conditions(self) -> dict[str, Any]:
-        """For the manifest; `settle_s` tells the analysis what to leave out."""
-        return self.plan.conditions()
-
-    def steps(self, setting: Setting) -> Steps:
-        """Up, held, let run, down."""
-        return self.plan.steps(setting)

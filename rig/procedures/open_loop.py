@@ -16,7 +16,7 @@ from rig.control.spin import (
     slow_down_travel,
 )
 from rig.core.errors import NotReady, UsageError
-from rig.core.procedure import Envelope, Setting, Steps
+from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Sample, Torque
 from rig.core.units import RPM, TURN
 
@@ -178,3 +178,36 @@ class OpenLoop:
         early, late = (marks[third] - marks[0], marks[-1] - marks[-1 - third]) if turns else (1.0, 1.0)
         span = max(marks[-1] - marks[0], 1e-9)
         return Found(tau, marks[0], marks[-1], turns, way * turns * 60.0 / span, early / late - 1.0)
+
+
+class Pushed(Procedure):
+    """A procedure that is an `OpenLoop` and no more; its parameters are the members' own, as their defaults differ."""
+
+    speed_rpm: float  # of the motor, signed
+    revolutions: int
+    settle: float  # s
+    torque: float  # N·m, sign of the speed; 0: find it
+
+    def __post_init__(self) -> None:
+        _ = self.plan  # refuses what cannot be meant
+
+    @property
+    def plan(self) -> OpenLoop:
+        """The same in SI."""
+        return OpenLoop(self.speed_rpm, self.revolutions, self.settle, self.torque)
+
+    def envelope(self, setting: Setting) -> Envelope:
+        """The speed with what it may overshoot; the torque is what the loop may give while it holds the speed."""
+        return self.plan.envelope(setting)
+
+    def remarks(self, setting: Setting) -> list[str]:
+        """Where a torque that is given takes the motor."""
+        return self.plan.remarks(setting)
+
+    def conditions(self) -> dict[str, Any]:
+        """For the manifest; `settle_s` tells the analysis what to leave out."""
+        return self.plan.conditions()
+
+    def steps(self, setting: Setting) -> Steps:
+        """Up, held, let run, down."""
+        return self.plan.steps(setting)

@@ -23,24 +23,30 @@ class Interrupts:
     SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 
     def __init__(self) -> None:
-        self._signals = 0
-        self._keyed = 0  # 1 stop, 2 halt, by a key: written by one thread alone, so that no request can be lost
+        self._heard: list[int] = []  # signals, SIGQUIT twice: appended in one step, which no handler comes between
+        self._stop_key = self._halt_key = False  # only ever set: by any thread or handler, no request can be lost
         self.held = False  # somebody asked for the motor to be held; a stop asked for later goes before
         self._before: dict[signal.Signals, Any] = {}
 
     @property
     def count(self) -> int:
         """1 stop, 2 or more halt."""
-        return self._keyed if self._keyed > self._signals else self._signals
+        signals = len(self._heard)  # nobody has pressed a key at nearly every tick
+        return max(signals, self._keyed) if self._stop_key or self._halt_key else signals
 
     @count.setter
     def count(self, value: int) -> None:
-        self._signals = value
+        self._heard = [0] * value
+
+    @property
+    def _keyed(self) -> int:
+        """1 stop, 2 halt, by a key."""
+        return 2 if self._halt_key else int(self._stop_key)
 
     @property
     def signalled(self) -> bool:
         """Whether a signal asked for an end, not a key."""
-        return self._signals > 0
+        return bool(self._heard)
 
     @property
     def exit(self) -> Exit:
@@ -54,19 +60,24 @@ class Interrupts:
 
     def request(self, signum: int = 0, frame: FrameType | None = None) -> None:
         """One more request to end, by a signal."""
-        self._signals += 2 if signum == signal.SIGQUIT else 1
+        self._heard.extend((signum, signum) if signum == signal.SIGQUIT else (signum,))
 
     def hold(self) -> None:
         """Bring the motor to rest and hold it there, torque on; what a key calls."""
         self.held = True
 
+    def let_hold_go(self) -> bool:
+        """A run is accepted: a hold asked for while nothing ran is over. True when there was one that is."""
+        asked, self.held = self.held, False
+        return asked and not self.held  # the page's lasts as long as the act it was pressed in
+
     def stop(self) -> None:
-        """What a key calls; asked for twice it is still a stop."""
-        self._keyed = max(self._keyed, 1)
+        """What a key calls; asked for twice it is still a stop, and after a halt it is none."""
+        self._stop_key = True
 
     def halt(self) -> None:
         """What a key calls: torque off at once."""
-        self._keyed = 2
+        self._halt_key = True
 
     def __enter__(self) -> Interrupts:
         for sig in self.SIGNALS:

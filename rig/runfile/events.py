@@ -10,7 +10,7 @@ from typing import Any
 
 from rig.core.errors import DataError, RecorderError
 from rig.core.regular import regular
-from rig.runfile.manifest import parse, told, utc_now
+from rig.runfile.manifest import parse, told, utc_now, write_atomic
 
 NAME = "events.jsonl"
 LONGEST_LINE = 2**20  # bytes; an event of ours is a sentence, and a line of 200 MB takes minutes to parse
@@ -39,6 +39,13 @@ class EventLog:
         """One line of events. Raises RecorderError."""
         with told(RecorderError, f"events of the run cannot be written to {self.path}"):
             self._file.write(line)
+
+    def forsake(self) -> None:
+        """A copy takes the place of the file: whoever is held up in writing to it adds nothing to what is read and
+        hashed from now on. Raises RecorderError.
+        """
+        with told(RecorderError, f"events of the run cannot be written to {self.path}"):
+            write_atomic(self.path, self.path.read_bytes())
 
     def close(self) -> None:
         """Idempotent."""

@@ -15,19 +15,28 @@ BESIDE = 8e6  # bytes: events, report, result, and blocks that are not full
 
 
 def rows_bytes(rows: float) -> float:
-    """On disk."""
+    """On disk, of a run while it is closed: the one rule for it."""
     return rows * 8 * len(CHANNELS) * SHARE
 
 
-def refuse_no_room(folder: Path, rows: float, what: str) -> None:
-    """Raises UsageError when the disk under `folder` has no room for `rows` rows of `what`."""
+def free_under(folder: Path) -> int:
+    """Bytes that are free on the disk of `folder`, which need not be there yet. Raises OSError."""
     there = folder
     while not os.path.lexists(there) and there != there.parent:
         there = there.parent
     try:
-        free = shutil.disk_usage(there).free
+        return shutil.disk_usage(there).free
     except OSError as error:
-        raise UsageError(f"cannot see how much room {str(there)[:200]} has: {error.strerror}") from None
+        error.filename = str(there)
+        raise
+
+
+def refuse_no_room(folder: Path, rows: float, what: str) -> None:
+    """Raises UsageError when the disk under `folder` has no room for `rows` rows of `what`."""
+    try:
+        free = free_under(folder)
+    except OSError as error:
+        raise UsageError(f"cannot see how much room {str(error.filename)[:200]} has: {error.strerror}") from None
     needed = MARGIN * rows_bytes(rows) + BESIDE
     if free < needed:
         raise UsageError(

@@ -33,12 +33,15 @@ class Behind:
         while (line := self._lines.get()) is not None:
             with contextlib.suppress(HdrigError):  # a full disk shows in the rows
                 self._log.append(line)
+        self._log.close()
 
     def close(self) -> bool:
-        """No event comes any more; whether all are written. A thread that the disk still holds up is left to it."""
+        """No event comes any more; whether all are written. A thread that the disk still holds up is left to it, and
+        writes to what is read no more. Raises RecorderError.
+        """
         self._lines.put(None)
         self._thread.join(PATIENCE)
         if self._thread.is_alive():
+            self._log.forsake()
             return False
-        self._log.close()
         return True

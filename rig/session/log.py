@@ -47,8 +47,9 @@ class SessionLog:
         else:
             self._log.write(kind, text, t)
 
-    def close(self) -> None:
-        """No folder takes events any more: those told are written, unless the disk hangs. Idempotent."""
-        if self._log is not None:
-            self._log.close()
-            self._log = None
+    def close(self) -> bool:
+        """No folder takes events any more; whether those told are written, which they are unless the disk hangs.
+        Idempotent. Raises RecorderError.
+        """
+        log, self._log = self._log, None
+        return log is None or log.close()

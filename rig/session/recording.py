@@ -20,6 +20,7 @@ from rig.loop import Ending, Loop
 from rig.process.interrupts import Interrupts
 from rig.recorder import Recorder
 from rig.runfile.finalise import finalise
+from rig.session.behind import PATIENCE
 from rig.session.done import Done, Watch
 from rig.session.log import SessionLog
 from rig.session.observer import Begun, Observer
@@ -63,13 +64,15 @@ class Recording:
             raise
         finally:
             # the loop has made the drive safe, whatever happened; only now files
-            self.observer.ended(folder, ending)
-            problem = self._close(recorder, folder, ending, rows)
-            if problem:
-                print(f"hdrig: {problem}", file=sys.stderr)
-            if failed is not None:  # no report follows by itself
-                report = f"; hdrig analyse {folder} makes its report" if rows and not problem else ""
-                failed.add_note(f"what was recorded is in {folder}{report}")
+            try:
+                self._tell(folder, ending)
+            finally:  # whatever becomes of an observer
+                problem = self._close(recorder, folder, ending, rows)
+                if problem:
+                    print(f"hdrig: {problem}", file=sys.stderr)
+                if failed is not None:  # no report follows by itself
+                    report = f"; hdrig analyse {folder} makes its report" if rows and not problem else ""
+                    failed.add_note(f"what was recorded is in {folder}{report}")
         if problem:
             raise Ended(f"{ending.reason}; but {problem}", ending.exit or Exit.INCOMPLETE)
         return Done(folder, ending)
@@ -95,21 +98,32 @@ class Recording:
 
         return watches
 
+    def _tell(self, folder: Path, ending: Ending) -> None:
+        self.observer.ended(folder, ending)
+        if ending.finding is not None:
+            self.log.event("finding", _found(ending))
+
     def _close(self, recorder: Recorder | None, folder: Path, ending: Ending, rows: int) -> str:
         """Every row to disk, then the run closed; a sentence where that fails: the rows then stay where they are. No
         `recorder`: there was no memory for its ring, and nothing was energised."""
         facts: dict[str, Any] = {"exit": int(ending.exit)}
         if ending.finding is not None:
-            facts["finding"] = str(getattr(ending.finding, "sentence", ending.finding))
-            self.log.event("finding", facts["finding"])
+            facts["finding"] = _found(ending)
         try:
             # what the recorder could not write is in the ring: closing the run tries again
             if recorder is not None:
                 with contextlib.suppress(RecorderError):
                     recorder.close()
-            self.log.close()  # its hash is taken next: nothing may be added after
+            whole = self.log.close()  # its hash is taken next: nothing may be added after
             summary = self.timing.summary()
             closed = finalise(folder, ending.status, ending.reason, timing=summary, expected_rows=rows, **facts)
         except HdrigError as error:
             return f"{error}; hdrig recover {folder} tries again"
-        return f"{closed.lost} of {rows} rows of {folder} are lost" if closed.lost else ""
+        lost = f"{closed.lost} of {rows} rows of {folder} are lost" if closed.lost else ""
+        late = "" if whole else f"the last events of {folder} are missing: its disk did not take them in {PATIENCE:g} s"
+        return "; ".join(filter(None, (lost, late)))
+
+
+def _found(ending: Ending) -> str:
+    """What the procedure found, in a sentence where it has one."""
+    return str(getattr(ending.finding, "sentence", ending.finding))

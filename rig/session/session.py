@@ -64,6 +64,15 @@ class Session:
             if missing := self.bench.twin_not_there:
                 error.add_note(missing)
             raise
+        try:
+            self._begin()
+        except BaseException:
+            self.instruments.close()
+            raise
+        return self
+
+    def _begin(self) -> None:
+        """What the devices say of themselves is told; from here a run may be asked for."""
         for device in self.instruments.devices:
             for remark in device.remarks:
                 self.log.event("note", remark)
@@ -72,7 +81,6 @@ class Session:
         self.supervisor.act(Act.CONNECT)
         if self.simulated and not self.bench.simulated:
             self.observer.simulated(self.bench.file.name)
-        return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -231,6 +239,8 @@ class Session:
 
     def _run(self, procedure: Procedure, root: Path, watch: Watch) -> Done:
         self.folder = None
+        if self.interrupts.let_hold_go():
+            self.log.event("note", "a hold was asked for while nothing ran: there was nothing to hold")
         self.check(procedure)
         if (told := self._wound_up()) is not None:
             self._warn(told)

@@ -32,7 +32,7 @@ class Panel(Interrupts):
         """A new act: presses before `taken` are over and done; `page_lost_s` without a page are a stop."""
         self._taken, self._patience, self.lost = taken, page_lost_s, False
         self._total = -1
-        self.held = False
+        self.held = self._stop_key = False
 
     def disarm(self) -> None:
         """Nothing is being carried out: a page may come and go."""
@@ -61,13 +61,13 @@ class Panel(Interrupts):
     def count(self) -> int:
         """1 stop, 2 halt."""
         self._look()
-        if not (self._asked or self._signals or self._keyed or self.lost):
+        if not (self._asked or self._heard or self._keyed or self.lost):
             self.lost = self._switches.page_age > self._patience
-        return max(self._asked, self._signals, self._keyed, int(self.lost))
+        return max(self._asked, len(self._heard), self._keyed, int(self.lost))
 
     @count.setter
     def count(self, value: int) -> None:
-        self._signals = value
+        self._heard = [0] * value
 
     @property
     def held(self) -> bool:
@@ -82,7 +82,7 @@ class Panel(Interrupts):
     @property
     def signalled(self) -> bool:
         """True once a signal told this process to end."""
-        return self._signals > 0
+        return bool(self._heard)
 
     @property
     def who(self) -> str:

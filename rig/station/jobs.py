@@ -1,18 +1,20 @@
-"""What each act does, once it is accepted. Anything that raises HdrigError is told to the page as refused."""
+"""What each act does, once it is accepted. What raises HdrigError is told to the page as refused, any other error
+as a defect of ours."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from rig.bench import Bench, ClockName, read
 from rig.campaign.clear_of_resonance import refuse_resonance
 from rig.campaign.run import to_bare
-from rig.core.errors import HdrigError, UsageError
+from rig.core.errors import UsageError
 from rig.core.operator import FreeOutput, LockOutput
 from rig.core.procedure import Procedure
 from rig.doctor import CHECKS
 from rig.doctor.devices import check_devices, identified
+from rig.doctor.disk import check_disk
 from rig.doctor.finding import Finding, Health
 from rig.parameters.read import make
 from rig.procedures import CATALOGUE, procedure_class
@@ -31,13 +33,12 @@ def connect(station: Station, message: Mapping[str, Any]) -> None:
     session = Session(bench, clock, station.root, station.panel, observer=station.teller)
     try:
         station.stack.enter_context(session)
-    except HdrigError:
+    except Exception:
         station.disconnect()
         raise
     station.connected(session)
-    simulated = bench.simulated or any(identity.simulated for identity in session.identities.values())
     station.status.bench = {
-        "name": bench.file.name, "source": str(message.get("bench", "")), "simulated": simulated,
+        "name": bench.file.name, "source": str(message.get("bench", "")), "simulated": session.simulated,
         "gear": bench.file.gear.serial,
         "ratio": bench.file.gear.N, "rate": bench.file.loop.rate, "clock": clock,
         "overrides": [str(x) for x in message.get("overrides") or []],
@@ -63,12 +64,12 @@ def disconnect(station: Station, message: Mapping[str, Any]) -> None:
 
 
 def check(station: Station, message: Mapping[str, Any]) -> None:
-    """The doctor; of devices that are open already only what they said of themselves."""
+    """The doctor."""
     session = station.session
-    bench: Bench = session.bench if session is not None else read(str(message.get("bench", "twin")))
+    bench = session.bench if session is not None else read(str(message.get("bench", "twin")))
     station.status.checks = []
     for one in CHECKS:
-        found = _devices(session) if one is check_devices and session is not None else one(bench)
+        found = _found(one, bench, station)
         station.status.checks += [
             {"name": f.what, "ok": f.health is not Health.BAD, "health": str(f.health), "text": f.sentence}
             for f in found
@@ -83,6 +84,15 @@ def _devices(session: Session) -> list[Finding]:
     found = identified(session.identities)
     trouble = session.instruments.causes()
     return [*found, Finding("devices", Health.BAD, trouble)] if trouble else found
+
+
+def _found(one: Callable[[Bench], list[Finding]], bench: Bench, station: Station) -> list[Finding]:
+    """Room where this station's runs go; of devices that are open already only what they said of themselves."""
+    if one is check_disk:
+        return check_disk(bench, station.root)
+    if one is check_devices and station.session is not None:
+        return _devices(station.session)
+    return one(bench)
 
 
 def prove(station: Station, message: Mapping[str, Any]) -> None:

@@ -11,6 +11,7 @@ from typing import Any, final
 
 from rig.core.errors import HdrigError, NotReady, with_notes
 from rig.core.operator import Change
+from rig.core.way_out import internal
 from rig.live.switches import Counts, Switches
 from rig.session import Session
 from rig.station.analysis import Analysis
@@ -194,11 +195,21 @@ class Station:
             job(self, message)
         except HdrigError as error:
             self.teller.say("refused", with_notes(error))
+        except Exception as error:  # noqa: BLE001  a defect of ours in one act lets go of no bench, and ends no station
+            self._broke_off(error)
         finally:
             self.panel.disarm()
             self._halts = self.switches.pressed.halt  # what was halted is not halted again
             self.status.job, self.status.campaign, self.status.run = "", None, None
             self.told()
+
+    def _broke_off(self, error: Exception) -> None:
+        """Torque off, and the sentence that the command line would end with."""
+        told = "; ".join([internal(error), *getattr(error, "__notes__", [])])
+        if self.session is not None and not self.session.instruments.safe():
+            told = f"{told}; TORQUE OFF NOT CONFIRMED by the drive: hard-wired stop"
+            self.session.supervisor.act(Act.TRIP, f"{internal(error)}; {UNCONFIRMED}")
+        self.teller.say("error", told)
 
     def _patience(self) -> float:
         """s without a page after which a run is stopped."""

@@ -42,6 +42,22 @@ def test_every_round_leaves_the_trace_and_its_page(tmp_path: Path, monkeypatch: 
     assert {path.name for path in tmp_path.iterdir()} == {"trace.json", "report.html"}
 
 
+def test_a_round_that_is_stopped_while_its_page_is_made_leaves_what_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The figures of the new trace lay beside the page of the old one."""
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rig.analysis.tracing.trace.trace", lambda folder: made_up.nothing())
+    monkeypatch.setattr(trace_page, "render", stopped)
+    (tmp_path / "trace.json").write_text("of before")
+    with pytest.raises(KeyboardInterrupt):
+        trace_folder(tmp_path)
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("trace.json", "of before")]
+
+
 @pytest.fixture
 def begun(tmp_path: Path) -> Path:
     """The folder of a loop on the twin that was stopped before its first run, with 12 min to go on."""

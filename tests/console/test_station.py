@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import shutil
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from rig.doctor.disk import check_disk
+from rig.instruments import Instruments
 from rig.live.switches import Switches
+from rig.station import jobs
 from rig.station.channel import Channel
 from rig.station.interrupts import Panel
 from rig.station.jobs import JOBS
 from rig.station.station import Station
+from rig.supervisor import State
+from tests.runfile.test_room import Usage
 
 
 @pytest.fixture
@@ -44,3 +50,52 @@ def test_a_refused_act_is_told_before_the_station_is_free_again(line: tuple[Stat
     free = said.index(("status", ""))
     assert ("event", "refused") in said[:free], said
     assert ("reply", "") in said[:free], said
+
+
+def test_the_check_looks_at_the_disk_that_the_runs_of_this_station_go_to(
+    line: tuple[Station, Channel], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It looked at the folder the console was started in, which may be on another disk."""
+    station, _ = line
+    looked: list[str] = []
+
+    def disk_usage(path: Path) -> Usage:
+        looked.append(str(path))
+        return Usage(int(1e12), 0, int(1e9))
+
+    monkeypatch.setattr(shutil, "disk_usage", disk_usage)
+    monkeypatch.setattr(jobs, "CHECKS", (check_disk,))
+    station.take({"act": "check", "id": "1", "until": None, "bench": "twin"})
+    assert looked == [str(station.root)]
+    (found,) = station.status.checks
+    assert found["text"].startswith("1.0 GB free, ")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("confirms", [True, False])
+def test_a_defect_in_an_act_is_a_sentence_and_the_station_keeps_the_bench_without_torque(
+    line: tuple[Station, Channel], monkeypatch: pytest.MonkeyPatch, confirms: bool
+) -> None:
+    """The process ended with a traceback, and the bench was let go."""
+
+    def broken(station: Station, message: Mapping[str, Any]) -> None:
+        station.need().instruments.drive.enable()
+        monkeypatch.setattr(Instruments, "safe", safe)
+        raise ZeroDivisionError("a bug")
+
+    def safe(instruments: Instruments) -> bool:
+        taken_off.append(instruments.drive.halt())
+        return confirms
+
+    station, page = line
+    taken_off: list[bool] = []
+    station.jobs = {**JOBS, "jog": broken}
+    station.take({"act": "connect", "id": "1", "until": None, "bench": "twin", "clock": "virtual"})
+    page.receive(1.0)
+    station.take({"act": "jog", "id": "2", "until": None})
+    said = [m["event"]["text"] for m in page.receive(1.0) if m["kind"] == "event" and m["event"]["kind"] == "error"]
+    assert said[-1].startswith("internal error, please report it: ZeroDivisionError: a bug in ")
+    assert ("TORQUE OFF NOT CONFIRMED" in said[-1]) is not confirms
+    assert taken_off == [True]
+    assert station.need().supervisor.state is (State.CONNECTED if confirms else State.FAULT)
+    station.attend()  # it goes on

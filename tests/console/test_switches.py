@@ -52,6 +52,13 @@ def test_what_a_key_would_call_counts_too(panel: Panel) -> None:
     assert panel.count == 2
 
 
+def test_a_stop_by_key_is_over_with_the_next_act(pressed: Switches, panel: Panel) -> None:
+    """As a hold is one that no loop could hold: the run after it was stopped before it began."""
+    panel.stop()
+    panel.arm(pressed.pressed)
+    assert panel.count == 0
+
+
 def test_a_hold_is_held_until_the_next_act(pressed: Switches, panel: Panel) -> None:
     pressed.hold()
     assert panel.held

@@ -126,7 +126,11 @@ def test_it_completes_on_the_twin_within_what_it_announced(name: str) -> None:
 @pytest.mark.parametrize("name", CATALOGUE)
 @pytest.mark.parametrize("stop_at", [1, 700, 3000])
 def test_it_can_be_stopped_anywhere_and_leaves_no_torque(name: str, stop_at: int) -> None:
-    ending, sink, _ = run(name, stop_at)
+    ending, sink, procedure = run(name, stop_at)
     assert ending.status in ("stopped", "completed")
     assert sink.rows[-1][2] == 0.0
-    assert abs(sink.rows[-1][0].omega_m) < 1.0
+    if procedure.closes_loop:
+        assert abs(sink.rows[-1][0].omega_m) < 1.0
+    elif ending.status == "stopped":  # nothing is known yet to brake by: friction does it
+        assert "torque off at once and no braking" in ending.reason
+        assert "turns on" not in ending.reason

@@ -12,11 +12,13 @@ from rig.doctor import CHECKS
 from rig.doctor.bus_load import bits, judge
 from rig.doctor.calibration import judge as judge_calibration
 from rig.doctor.devices import check_devices
+from rig.doctor.disk import LEAST_HOURS
 from rig.doctor.disk import judge as judge_disk
 from rig.doctor.finding import Health
 from rig.doctor.governor import judge as judge_governor
 from rig.doctor.latency import measure
 from rig.doctor.scheduling import check_scheduling
+from rig.runfile.room import rows_bytes
 
 
 @pytest.mark.parametrize(("count", "most"), [(0, 55), (4, 95), (5, 105), (6, 115), (8, 135)])
@@ -62,6 +64,12 @@ def test_a_calibration_is_known_and_valid_or_said_not_to_be(made: date | None, d
 @pytest.mark.parametrize(("free", "health"), [(10**8, Health.BAD), (10**9, Health.DOUBTFUL), (10**11, Health.GOOD)])
 def test_free_disk_is_told_in_hours(free: int, health: Health):
     assert judge_disk(free, 1000.0).health is health
+
+
+def test_a_disk_is_judged_by_what_a_run_is_refused_by():
+    rows = LEAST_HOURS * 3600 * 1000.0
+    assert judge_disk(int(rows_bytes(rows)) + 1, 1000.0).health is Health.GOOD
+    assert judge_disk(int(rows_bytes(rows)) - 1, 1000.0).health is Health.DOUBTFUL
 
 
 def test_a_governor_that_changes_the_clock_is_doubtful():

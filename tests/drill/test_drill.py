@@ -13,6 +13,7 @@ from rig.drill import odrive_causes
 from rig.drill.canopen_rig import CanopenRig
 from rig.drill.cause import Cause, Expected
 from rig.drill.causes import CAUSES
+from rig.drill.causes import verb as strike
 from rig.drill.drill import drill
 from rig.drill.odrive_rig import ODriveRig
 from rig.drill.phase import PHASES, Phase
@@ -83,6 +84,16 @@ def test_a_fault_that_was_to_be_ridden_out_fails_the_drill_when_it_trips() -> No
     trips = next(c for c in CAUSES if c.name == "drive trips by itself")
     outcome = drill(dataclasses.replace(trips, expected=Expected.GO_ON), TRACKING)
     assert "expected to go on" in outcome.wrong[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("phase", PHASES[:2], ids=lambda p: p.name)
+def test_a_drive_that_takes_its_time_to_enable_finds_its_reference_still_there(phase: Phase) -> None:
+    """Four transitions of 0.2 s and more: the run began without it, and tripped at its first tick."""
+    slow = Cause("SDO answers 0.2 s late", strike("slow_sdo", "drive", 0.2), 0.0, Expected.GO_ON)
+    outcome = drill(slow, phase)
+    assert outcome.passed, f"{outcome.wrong}: {outcome.reason}"
+    assert outcome.ended == "completed", outcome.reason
 
 
 @pytest.mark.slow

@@ -13,11 +13,12 @@ from drivers.wiring import Place
 from rig.bench import read
 from rig.core.channels import Flag
 from rig.core.errors import Exit, NotReady
-from rig.core.sample import Mode, Position, Torque, Velocity
+from rig.core.sample import Mode, Position, Setpoint, Torque, Velocity
 from rig.procedures.coast_down import CoastDown
 from rig.procedures.kinematic_error import KinematicError
 from rig.process.interrupts import Interrupts
 from rig.refusals import refuse_mode
+from sim.wire.faults.of_bus import BusFaults
 from sim.wire.servo import Motion
 from sim.wire.states402 import DriveState
 from tests.drivers.running import run
@@ -95,6 +96,38 @@ def test_a_setpoint_of_another_kind_than_enabled_for_is_not_sent():
     assert w.instruments.write(Torque(1.0)) == 0.0
     assert math.isnan(w.instruments.write(Position(1.0)))
     assert w.instruments.write(Velocity(1.0)) == pytest.approx(1.0, abs=TURN / 10_000)
+
+
+@pytest.mark.parametrize(
+    ("mode", "first", "then"),
+    [
+        (Mode.TORQUE, Torque(0.6), Torque(0.9)),
+        (Mode.VELOCITY, Velocity(1.0), Velocity(2.0)),
+        (Mode.POSITION, Position(0.01), Position(0.02)),
+    ],
+)
+def test_of_a_drive_that_is_not_heard_the_setpoint_it_still_goes_by_is_told(
+    mode: Mode, first: Setpoint, then: Setpoint
+):
+    """The row said 0 N·m, and the drive gave what it was told last."""
+    w = connected()
+    w.instruments.drive.enable(mode)
+
+    def tick(setpoint: Setpoint) -> float:
+        w.instruments.latch()
+        w.wire.wait_until(w.wire.now() + 0.001)
+        w.instruments.drive.read()
+        return w.instruments.write(setpoint)
+
+    assert tick(first) == pytest.approx(first[0], abs=1e-3)
+    BusFaults(w.twin.bus).drop(0x281)  # its position
+    for _ in range(4):  # the first of them may be lost: it goes on to that one
+        carried = tick(then)
+    sent: list[bytes] = []
+    w.twin.bus.attach("ear", lambda frame, t: sent.append(frame.data) if frame.identifier == 0x201 else None)
+    assert [tick(Torque(0.3) if mode is Mode.TORQUE else then) for _ in range(3)] == [carried] * 3
+    assert sent == []
+    assert carried == pytest.approx(then[0], abs=1e-3)
 
 
 def test_a_mode_the_drive_does_not_offer_is_refused_with_its_word():

@@ -120,6 +120,18 @@ def test_a_command_is_clipped_at_the_limit_and_said_as_f32_carries_it():
     assert w.instruments.write(Torque(math.nan)) == 0.0
 
 
+def test_of_an_axis_that_is_not_heard_the_torque_it_still_goes_by_is_told():
+    """The row said 0 N·m, and the axis gave what it was told last."""
+    w = connected()
+    w.instruments.drive.enable()
+    w.instruments.drive.read()
+    given = w.instruments.write(Torque(0.5))
+    w.instruments.drive._looked = w.wire.now() + 0.01  # and nothing came
+    assert w.instruments.write(Torque(0.7)) == given == 0.5
+    w.instruments.drive.halt()
+    assert w.instruments.write(Torque(0.7)) == 0.0
+
+
 def test_an_uncalibrated_axis_does_not_enable_and_is_left_idle():
     w = connected(Settings(heartbeat=0.02, watchdog=0.15, calibrated=False))
     with pytest.raises(NotReady, match=r"stays in 'idle', expected closed-loop control.*bad configuration"):

@@ -192,6 +192,19 @@ def test_a_slow_line_that_lives_is_not_named_beside_the_one_that_fell_silent(ben
     assert bench.run().reason.startswith("no new load-encoder sample for")
 
 
+@pytest.mark.parametrize("before", [b"", b"e0000000001!\r\n"], ids=["", "after half a command of somebody else"])
+def test_a_qsb_that_refuses_a_command_says_with_which_error_at_once(before: bytes) -> None:
+    """The operator waited a second and read that it did not answer."""
+    peer = Peer(b"")
+    qsb = Qsb(Wiring(FakeClock()), Place("load_encoder", {"port": peer.path}, 900_000, speed_limit=1.0))
+    qsb.port.open()
+    os.write(peer.master, b"\r\n" + before + b"e1400000002!\r\n")
+    with pytest.raises(NotReady, match=r"load encoder on \S+ refuses R14 with error 2"):
+        qsb._ask(b"R14")
+    qsb.close()
+    peer.close()
+
+
 @pytest.mark.slow  # a second of patience each
 @pytest.mark.parametrize(
     ("line", "told"),

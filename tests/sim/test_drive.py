@@ -12,7 +12,7 @@ from rig.core.channels import Flag
 from rig.core.errors import HdrigError, NotReady
 from rig.core.sample import Torque
 from sim.drive import TwinDrive
-from sim.faults import Frozen, Jump, Reversed, Scale, Silent
+from sim.faults import Frozen, Jump, Scale, Silent
 from sim.parameters import TwinParameters
 from sim.world import World
 
@@ -229,7 +229,7 @@ def test_a_jump_moves_angle_and_counts_together(drive: TwinDrive) -> None:
 
 
 @pytest.mark.parametrize(
-    ("fault", "factor"), [(Reversed(), -1.0), (Scale(2.0), 2.0), (Scale(50.0 / 51.0), 50.0 / 51.0)]
+    ("fault", "factor"), [(Scale(-1.0), -1.0), (Scale(2.0), 2.0), (Scale(50.0 / 51.0), 50.0 / 51.0)]
 )
 def test_a_reversed_or_misscaled_encoder_is_wrong_from_power_up_on(
     drive: TwinDrive, fault: Scale, factor: float

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rig.core.channels import Flag
-from sim.faults import Frozen, Jump, Overload, Reversed, Scale, Silent
+from sim.faults import Frozen, Jump, Overload, Scale, Silent
 from sim.noise import normal
 from sim.parameters import TwinParameters
 from sim.sensors import TwinLoadEncoder, TwinTorqueSensor
@@ -165,7 +165,7 @@ def test_a_slipped_a_reversed_and_a_misscaled_load_encoder(twin: TwinParameters)
     world.wait_until(0.5)
     true = world.truth().theta_l - encoder.encoder.zero
     assert true > 0.02
-    for fault, expected in ((Jump(0.01), true + 0.01), (Reversed(), -true), (Scale(1.5), 1.5 * true)):
+    for fault, expected in ((Jump(0.01), true + 0.01), (Scale(-1.0), -true), (Scale(1.5), 1.5 * true)):
         fresh = TwinLoadEncoder(world)
         fresh.encoder, fresh.fault = encoder.encoder, fault
         fresh.connect()

@@ -12,6 +12,8 @@ halt is one tick away, and a loop that nobody types at is never disturbed.
 | Ctrl-\ | halt |
 | Ctrl-Z | while the motor is energised a stop: a program that sleeps cannot guard it; else what it always is |
 
+In a run that relies on no loop, as the proof of the signs, hold and stop take the torque off at once.
+
 What a terminal sends by itself is no key: answers to what some program asked of it, focus, the mouse. That it is gone
 is told by a signal.
 """

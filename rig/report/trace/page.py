@@ -33,13 +33,9 @@ SWEEP = "sweep.html"
 QUIET = 1.15  # RMS over floor before: a channel with less is at its floor and gets no close-up of its own
 
 
-def write(folder: Path, trace: Trace, origin: Provenance) -> Path:
-    """Write `folder`/report.html and return its path. The file is replaced whole or not at all. Raises OSError."""
-    return put(folder, render(trace, origin))
-
-
 def put(folder: Path, text: str) -> Path:
-    """The same of a page that is rendered already. That of a sweep, which no verb makes again, is kept as SWEEP."""
+    """Write the rendered `text` as `folder`/report.html and return its path. The file is replaced whole or not at all;
+    that of a sweep, which no verb makes again, is kept as SWEEP. Raises OSError."""
     page = folder / run_page.NAME
     if page.exists() and (folder / "result.json").exists() and not (folder / SWEEP).exists():
         page.replace(folder / SWEEP)

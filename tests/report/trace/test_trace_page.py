@@ -353,7 +353,7 @@ def test_the_page_of_an_older_trace_is_not_kept(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_a_full_page_needs_nobody_else_and_is_the_same_twice(tmp_path: Path) -> None:
-    written = page.write(tmp_path, made_up.explained(), made_up.source())
+    written = page.put(tmp_path, page.render(made_up.explained(), made_up.source()))
     text = written.read_text()
     assert text == page.render(made_up.explained(), made_up.source())
     found = Reader(text)
