@@ -30,3 +30,14 @@ def test_what_is_measured_to_a_third_is_more_than_what_is_not_nothing(half: floa
     asked.sized = Asked.sized.func(asked)
     assert (name in asked.sized) is sized
     assert (name in Asked.measured.func(asked)) is measured
+
+
+@pytest.mark.parametrize(("half", "nothing"), [(0.05, False), (1.3, True)])
+def test_a_resonance_that_may_as_well_not_swing_may_be_nothing(half: float, nothing: bool) -> None:
+    """What is left of it then is an inertia, as the gear has one."""
+    words = (
+        Parameter("J_2", 0.68, (0.5, 0.86), "kg·m²"),
+        Parameter("frequency", 58.7, (53.0, 64.4), "Hz"),
+        Parameter("zeta", 0.04, (0.04 - half, 0.04 + half), "1"),
+    )
+    assert may_be_nothing(LIBRARY["torsional_mode"], words) is nothing
