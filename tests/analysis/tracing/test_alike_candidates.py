@@ -18,8 +18,9 @@ from rig.model.effects.torsional_mode import DRIVEN, LOAD, MOTOR, TorsionalMode
 SUPPORT = Term(SupportCompliance(), (0.0, 69.0, 0.05))
 MODE, SAME_MODE = (Term(TorsionalMode(), (LOAD, hz, 0.04, 0.0)) for hz in (50.0, 54.0))
 DRIVEN_MODE = Term(TorsionalMode(), (DRIVEN, 68.5, 0.04, 0.0))
+SAME_MODE_MOTOR = Term(TorsionalMode(), (MOTOR, 50.0, 0.04, 0.0))
 FAR = Term(CoggingTorque(), (4.0,))
-AS_REFINED = {SUPPORT: 5668.0, MODE: 4275.0, SAME_MODE: 9e9, DRIVEN_MODE: 5813.0, FAR: 9e9}
+AS_REFINED = {SUPPORT: 5668.0, MODE: 4275.0, SAME_MODE: 9e9, DRIVEN_MODE: 5813.0, SAME_MODE_MOTOR: 9e9, FAR: 9e9}
 
 
 @pytest.fixture
@@ -73,3 +74,10 @@ def test_a_law_of_more_coefficients_has_to_pay_for_them() -> None:
         return search._worth(s)
 
     assert worth(1070.0, 76) < worth(1000.0, 70) < worth(1074.0, 76)
+
+
+def test_every_effect_that_is_nearly_as_good_is_refined_before_a_second_law_of_one(tried: list[Term]) -> None:
+    """Three laws of a stiffness that changes with the angle stood before the one cubic spring (exam 102, case 14)."""
+    ranked = ((MODE, 2443.0), (DRIVEN_MODE, 2440.0), (SAME_MODE_MOTOR, 2430.0), (SUPPORT, 2400.0))
+    assert chosen(*ranked) == DRIVEN_MODE
+    assert tried == [MODE, SUPPORT, DRIVEN_MODE]

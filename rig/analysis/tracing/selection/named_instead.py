@@ -35,7 +35,7 @@ def named_instead(selected: Selected, found: Found, bank: Bank, runs: Sequence[i
         terms = selected.solution.design.terms
         bare = fit(reduced(selected.solution.design, [i for i, term in enumerate(terms) if term.name not in before]))
         ranking = ranking_of_some(bare.design, bank, runs, covered, LAWS)
-        but = selected.names | selected.taken | CONFOUNDERS.keys()
+        but = before | selected.taken | CONFOUNDERS.keys()
         for rival in [r.term for r in ranking if r.term.name not in but][:TRIED]:
             s = settled(refine(bare.design, rival, runs, covered)[1], runs, covered)
             other = select(selected.p, replace(found, solution=s), runs, covered)
