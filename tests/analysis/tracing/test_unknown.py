@@ -12,6 +12,7 @@ from rig.analysis.tracing.residual.binned import Beside, Halves, folds, own_exce
 from rig.analysis.tracing.residual.home import Home, plainest
 from rig.analysis.tracing.residual.joined import Rest
 from rig.analysis.tracing.residual.lines import SENSES, best_order
+from rig.analysis.tracing.residual.own_phases import own_phases
 from rig.analysis.tracing.residual.past import since_turned
 from rig.analysis.tracing.residual.shares import rising
 from rig.analysis.tracing.residual.sudden import turned_since
@@ -63,6 +64,11 @@ def slipping(at: At) -> np.ndarray:
     return np.concatenate([np.cumsum(x) * DT for x in np.split(over, RUNS)])
 
 
+def whirling(at: At, order: float = 0.47) -> np.ndarray:
+    phase = np.repeat([0.4, 2.9, 4.4, 1.6], ROWS)
+    return np.abs(at["speed"]) / 12.0 * np.cos(order * at["motor_angle"] + phase)
+
+
 MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
     "a hump of friction at one speed": (
         "speed",
@@ -79,6 +85,7 @@ MADE: dict[str, tuple[str, Callable[[At], np.ndarray]]] = {
         "motor_angle",
         lambda at: at["direction"] * np.exp(-((np.mod(5.537 * at["motor_angle"], 6.283) - 2) ** 2) / 0.02),
     ),
+    "an oil film that whirls, in another phase in each run": ("motor_angle", lambda at: whirling(at)),
     "a brake that rubs every ten seconds": ("time_periodic", lambda at: 1.0 * (np.mod(at["time"], 9.7) < 1.4)),
     "friction that breathes with a thermostat": (
         "time_periodic",
@@ -418,3 +425,26 @@ def test_neither_too_many_teeth_nor_two_turns_of_the_motor_are_the_outputs(order
     at = {"motor_angle": motor, "load_angle": motor / 50.0}
     r = Rest(np.ones(4000), np.zeros(4000), at, DT, np.zeros((4000, 0)), np.zeros((0, 0)))
     assert of_the_output(Home("motor_angle", "A", 1.0, order=order), r).coordinate == expected
+
+
+@pytest.mark.parametrize(
+    ("made", "order"),
+    [(lambda at: whirling(at), 0.47), (lambda at: whirling(at, 3.0), None), (lambda at: 0.0 * at["time"], None)],
+)
+def test_an_order_of_another_phase_in_each_run_is_no_whole_one(
+    made: Callable[[At], np.ndarray], order: float | None, rng: np.random.Generator
+) -> None:
+    """A whole one comes back at the same angle in every run, and is looked for so."""
+    at = coordinates(rng)
+    e = made(at) + rng.normal(0, 1, RUNS * ROWS)
+    r = Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE)
+    found = own_phases(Halves(r, folds(r)), "M")
+    assert (found.order if found else None) == (pytest.approx(order, abs=0.005) if order else None)
+
+
+def test_one_of_runs_of_one_speed_may_as_well_be_a_frequency(rng: np.random.Generator) -> None:
+    at = coordinates(rng)
+    slow = {name: x[: 2 * ROWS] for name, x in at.items()}
+    e = 3.0 * np.cos(0.47 * slow["motor_angle"]) + rng.normal(0, 1, 2 * ROWS)
+    r = Rest(e, np.repeat(np.arange(2), ROWS), slow, DT, *(x[: 2 * ROWS] if len(x) else x for x in NO_BASELINE))
+    assert own_phases(Halves(r, folds(r)), "M") is None

@@ -60,7 +60,7 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     turns = float(np.ptp(x)) / TURN
     step = float(np.clip(0.5 / max(turns, 1.0), *FINEST[name]))
     first = max(SPAN[name][0], step, 1 / turns if 0 < turns < HALF else 0.0)
-    rough = np.arange(first, max(min(SPAN[name][1], _highest(r, r.at[name])), first + 2 * step), step)
+    rough = np.arange(first, max(min(SPAN[name][1], highest(r, r.at[name])), first + 2 * step), step)
     power = spectrum(x, e, rough)
     fine = _sharpened(x, e, float(rough[int(np.argmax(power))]), step)
     near = np.array([fine, max(round(fine), 1)])
@@ -77,7 +77,7 @@ def best_order(h: Halves, name: str, channel: str, sense: Callable[[Rest], Array
     return max(wave, with_overtones, any_form, key=lambda home: home.share)
 
 
-def _highest(r: Rest, x: Array) -> float:
+def highest(r: Rest, x: Array) -> float:
     """Order of the angle `x` (n,) beyond which the rows of all runs are more than half a period apart: there a drift
     looks like a line."""
     apart = [float(np.median(np.abs(np.diff(x[r.run == run])))) for run in np.unique(r.run) if (r.run == run).sum() > 1]

@@ -15,6 +15,7 @@ from rig.analysis.tracing.residual.coordinates import FINE, INDICES, JOINT, LATE
 from rig.analysis.tracing.residual.home import Home, plainest
 from rig.analysis.tracing.residual.joined import Rest, loudness, rest
 from rig.analysis.tracing.residual.lines import BY_THE_CLOCK, SENSES, best_order, by_the_clock, by_the_day, line
+from rig.analysis.tracing.residual.own_phases import own_phases
 from rig.analysis.tracing.residual.readings import accelerating, drifting, in_bins, in_columns, powers, share, swelling
 from rig.analysis.tracing.residual.settling import settled
 from rig.analysis.tracing.residual.sudden import since, turned_since
@@ -63,6 +64,8 @@ def homes(r: Rest, channel: str) -> list[Home]:
     for name, sense in itertools.product(("motor_angle", "load_angle"), SENSES):
         if (found := best_order(h, name, channel, sense)) is not None:
             out.append(_of_the_way(of_the_output(found, r), sense))
+    if (slipping := own_phases(h, channel)) is not None:
+        out.append(slipping)
     if (gone := _wound(h, channel)) is not None:
         out.append(gone)
     out += [*worn_off(h, channel), *settled(h, channel)]
