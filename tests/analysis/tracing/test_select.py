@@ -105,3 +105,23 @@ def test_a_loop_that_leaves_much_is_not_named_where_a_creep_explains_nearly_as_m
     nothing: Any = None
     stood = select._stood_in_for(p, (loop, held, []), (), nothing)
     assert [term.name for term in stood[0].design.terms] == [stays]
+
+
+@pytest.mark.parametrize(
+    ("beside", "without", "sensors", "is_one"),
+    [
+        (0.037, 0.085, 0.036, True),  # turns under a weight differ by what the load does (exam 102, case 31)
+        (0.037, 0.040, 0.036, False),  # the same floor, nearly
+        (0.060, 0.120, 0.036, False),  # more than the sensors make: some of it may be noise of friction
+        (0.037, 0.085, None, False),
+    ],
+)
+def test_a_floor_beside_effects_that_the_sensors_make_is_one(
+    beside: float, without: float, sensors: float | None, is_one: bool
+) -> None:
+    def measured(rms: float) -> Any:
+        noise = SimpleNamespace(sigma=dict.fromkeys("AM", 1.0) | {"L": rms})
+        return SimpleNamespace(noise=noise, white={} if sensors is None else {(0, "L"): sensors, (1, "A"): 9.0})
+
+    p: Any = SimpleNamespace(measured=measured(beside), first=measured(without))
+    assert select._is_the_sensors(p, measured(without)) is is_one

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNEL, CHANNELS, WHOLE
+from rig.analysis.tracing.fit.channels import BASELINE, CHANNEL, CHANNELS, WHOLE
 from rig.analysis.tracing.fit.equations import Equations, Key, Noise
-from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.fit.model import Design, Solution
 from rig.analysis.tracing.floor.friction import Scattering, evened
 from rig.analysis.tracing.floor.homed import about_a_line
 from rig.analysis.tracing.floor.known import known
@@ -89,10 +89,12 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     interval: dict[str, tuple[float, float]] = {}
     friction = Scattering()
     design = solution.design
-    white = {key: float(np.sqrt(np.mean(design.noise_left(key, solution.x) ** 2))) for key in design.noise}
+    white = _white(design, solution.x)
+    # terms that go by a reading, and trade what they explain, would add theirs many times
+    of_the_sensors = _white(design, np.where(np.arange(design.size) < len(BASELINE), solution.x, 0.0))
     for channel in WHOLE:
         found, words = _compared(eq, e, channel, pairs, among)
-        found, said = _no_quieter_than_sensors(eq, found, channel, white)
+        found, said = _no_quieter_than_sensors(eq, found, channel, of_the_sensors)
         words += said
         if not found:
             if (left := _locked_alone(eq, e, channel)) is not None:
@@ -162,6 +164,11 @@ def _compared(
     found = found or [s for i in among if (s := turn_by_turn(eq, e, (i, channel))) is not None]
     many = f"{len(found)} run{'' if len(found) == 1 else 's'}"
     return found, f"neighbouring turns or strokes of {many} compared at equal motor angle, no repeats there"
+
+
+def _white(d: Design, x: Array) -> dict[Key, float]:
+    """RMS of what sensor noise leaves in the blocks it is known of, with coefficients `x` (p,)."""
+    return {key: float(np.sqrt(np.mean(d.noise_left(key, x) ** 2))) for key in d.noise}
 
 
 def _no_quieter_than_sensors(

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from typing import Final
 
+import numpy as np
+
+from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.covariance import covariance, scatter
 from rig.analysis.tracing.fit.equations import Equations
 from rig.analysis.tracing.fit.leaning import carrying
@@ -25,6 +29,9 @@ from rig.analysis.tracing.selection.two_for_one import two_for_one
 from rig.analysis.tracing.selection.uneven_fall import uneven_fall
 from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED, WORSE
 from rig.model.effect import Reach
+
+MUCH: Final = 1.5  # times the floor beside effects, from which on the one without them is another
+AS_SENSORS: Final = 1.2  # times their noise: what single runs of four campaigns left lay within 0.94 and 1.16 of it
 
 
 def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
@@ -119,14 +126,29 @@ def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
     """With the floor measured beside the effects that stayed: eliminated ones may have taken noise with them.
 
     Where nothing was repeated one turn differs from the next by what the model lacks as well: they stay, unless
-    nothing is left over that larger floor either.
+    nothing is left over that larger floor either, and the lower one is less than the sensors make.
     """
     measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
     again = replace(p, measured=measured, held_out=_held_out(p, p.eq, measured))
-    known = repeats(p.eq.runs, runs) or not is_loud(again.held_out, s, unseen(s, again.held_out))
-    return again if known else p
+    if repeats(p.eq.runs, runs):
+        return again
+    quiet = not is_loud(again.held_out, s, unseen(s, again.held_out))
+    return again if quiet and not _is_the_sensors(p, measured) else p
+
+
+def _is_the_sensors(p: Prepared, measured: Measured) -> bool:
+    """Whether the floor beside effects, where it is much lower than what was `measured` without, is what the noise of
+    the sensors makes: it took no noise with it, and what turns differ by is missing."""
+    lower = [c for c in WHOLE if measured.noise.sigma[c] > MUCH * p.measured.noise.sigma[c]]
+    return bool(lower) and all(p.measured.noise.sigma[c] < AS_SENSORS * _of_sensors(p.first, c) for c in lower)
+
+
+def _of_sensors(measured: Measured, channel: str) -> float:
+    """RMS of their noise in a channel, 0 where none is known."""
+    white = [rms for (_, c), rms in measured.white.items() if c == channel]
+    return float(np.sqrt(np.mean(np.square(white)))) if white else 0.0
 
 
 def _held_out(p: Prepared, eq: Equations, measured: Measured) -> HeldOut:
