@@ -448,3 +448,11 @@ def test_one_of_runs_of_one_speed_may_as_well_be_a_frequency(rng: np.random.Gene
     e = 3.0 * np.cos(0.47 * slow["motor_angle"]) + rng.normal(0, 1, 2 * ROWS)
     r = Rest(e, np.repeat(np.arange(2), ROWS), slow, DT, *(x[: 2 * ROWS] if len(x) else x for x in NO_BASELINE))
     assert own_phases(Halves(r, folds(r)), "M") is None
+
+
+def test_one_that_is_a_whole_one_of_the_output_is_the_outputs(rng: np.random.Generator) -> None:
+    at = coordinates(rng)
+    r = Rest(whirling(at, 0.48) + rng.normal(0, 1, RUNS * ROWS), np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE)
+    found = own_phases(Halves(r, folds(r)), "L")
+    assert found is not None
+    assert (found.coordinate, found.order) == ("load_angle", 24.0)
