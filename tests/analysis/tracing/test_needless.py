@@ -46,7 +46,7 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     without it, whatever a single run does, and the other one is known."""
     monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: few)
     work = {"stribeck": 900.0, "presliding": 500.0}
-    words = {name: (SimpleNamespace(holds_zero=over > QUIET or name == "presliding"),) for name in work}
+    words = {name: (SimpleNamespace(name="size", holds_zero=over > QUIET or name == "presliding"),) for name in work}
 
     def with_(names: list[str], loud: bool) -> Any:
         scores = [scored(name, work[name]) for name in names]
