@@ -31,7 +31,7 @@ from rig.analysis.tracing.thresholds import EXPLAINED, MISSING, NAMED, WORSE
 from rig.model.effect import Reach
 
 MUCH: Final = 1.5  # times the floor beside effects, from which on the one without them is another
-AS_SENSORS: Final = 1.2  # times their noise: what single runs of four campaigns left lay within 0.94 and 1.16 of it
+AS_SENSORS: Final = 1.2  # times their noise: what runs of four campaigns that turn left lay within 0.94 and 1.16 of it
 
 
 def select(p: Prepared, found: Found, runs: Sequence[int], covered: Reach) -> Selected:
