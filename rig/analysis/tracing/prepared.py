@@ -17,13 +17,14 @@ from rig.analysis.tracing.fit.scale import off_scale
 from rig.analysis.tracing.fit.search import ROUNDS, SETTLED
 from rig.analysis.tracing.floor.held_out import HeldOut, held_out_blocks
 from rig.analysis.tracing.floor.noise import Measured, guess, measure
-from rig.analysis.tracing.floor.of_a_run import floor_of
+from rig.analysis.tracing.floor.of_a_run import floor_of, of_sensors
 from rig.analysis.tracing.floor.own import Own, find
 from rig.analysis.tracing.runs.answered import KEPT, slow_enough, too_fast
 from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.runs.holdout import Split, split
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.weights import refuse_odd_torques
+from rig.analysis.tracing.thresholds import BEYOND
 from rig.core.errors import UsageError
 from rig.core.units import RPM
 
@@ -49,6 +50,15 @@ class Prepared:
     def floors(self) -> dict[Key, float]:
         """Of the fitted blocks."""
         return {key: floor_of(self.measured, self.eq, key) for key in self.eq.of(self.split.fitted)}
+
+    @cached_property
+    def silence(self) -> dict[Key, float]:
+        """Floors of the fitted blocks below which nothing more is looked for. What repeats of the load torque differ by
+        far beyond the noise of the readings is of a rig that answers otherwise each time: it may be what is missing."""
+        sensors = {key: of_sensors(self.measured, self.eq, *key) for key in self.floors if key[1] == "L"}
+        return {
+            key: min(floor, BEYOND * sensors[key]) if sensors.get(key) else floor for key, floor in self.floors.items()
+        }
 
 
 def prepare(campaign: Campaign, hold_out: Sequence[str], swapped: bool = False) -> Prepared:

@@ -90,7 +90,7 @@ def _selected(
     """What stands of a search through all `but` some effects, what it found, and what is covered by then."""
     runs = p.split.fitted
     without = but | p.own.made.keys()
-    found = search_some(start.design, tried.bank, runs, tried.covered, p.floors, quiet=quiet, excluded=without)
+    found = search_some(start.design, tried.bank, runs, tried.covered, p.silence, quiet=quiet, excluded=without)
     give_back()
     let_go = bool(_remembering(found.solution.design.terms))
     again, found = _again(p, found, tried, but)
@@ -187,7 +187,7 @@ def _again(p: Prepared, found: Found, tried: Tried, but: frozenset[str]) -> tupl
         loaded = reach([again.eq.runs[i] for i in runs])
         tried.fill(again, replace(tried.covered, torque=loaded.torque, pulled=loaded.pulled))
     how = {"ranking": found.ranking, "excluded": but | again.own.made.keys()}
-    found = search_some(s.design, tried.bank, runs, tried.covered, again.floors, **how)
+    found = search_some(s.design, tried.bank, runs, tried.covered, again.silence, **how)
     return again, found
 
 

@@ -12,12 +12,13 @@ import pytest
 from rig.analysis.tracing.fit.equations import Noise
 from rig.analysis.tracing.floor import of_a_run
 from rig.analysis.tracing.floor.friction import Scattering
-from rig.analysis.tracing.floor.noise import Measured, _no_quieter_than_sensors, finest
+from rig.analysis.tracing.floor.noise import Measured, _as_sensors_tell, finest
 from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.floor.offsets import own_offset
 from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.floor.repeats import Scatter, effective
-from rig.analysis.tracing.thresholds import LENIENT
+from rig.analysis.tracing.prepared import Prepared
+from rig.analysis.tracing.thresholds import BEYOND, LENIENT
 
 SPEEDS = (12.0, 12.0, 20.0, 20.0, 30.0, 30.0, 40.0, 1.0)  # rad/s; the last two were never repeated
 JITTER = 5e-5  # N·m per rad/s
@@ -215,9 +216,47 @@ def test_turns_that_are_rounded_alike_are_as_noisy_as_their_sensors() -> None:
         return Scatter((pair[0], pair[-1]), 1e-3, 500, 0.0, np.ones(20), 100.0)
 
     white = {(0, "L"): 2e-3, (0, "M"): 5.0}
-    found, said = _no_quieter_than_sensors(eq, [scatter_of(0), scatter_of(1), scatter_of(2)], "L", white)
+    found, said = _as_sensors_tell(eq, [scatter_of(0), scatter_of(1), scatter_of(2)], "L", white)
     assert [s.rms for s in found] == [2e-3, 2e-3, 1e-3]
     assert "less than the noise of the readings" in said
-    found, said = _no_quieter_than_sensors(eq, [scatter_of(0, 1)], "L", white)  # repeats begin at other angles
+    found, said = _as_sensors_tell(eq, [scatter_of(0, 1)], "L", white)  # repeats begin at other angles
     assert ([s.rms for s in found], said) == ([1e-3], "")
-    assert _no_quieter_than_sensors(eq, [scatter_of(0)], "L", {(0, "L"): 1.1e-3})[1] == ""
+    assert _as_sensors_tell(eq, [scatter_of(0)], "L", {(0, "L"): 1.1e-3})[1] == ""
+
+
+def test_a_load_torque_many_times_as_noisy_as_its_sensors_is_no_floor() -> None:
+    """What begins anew in every turn, as a rub at one angle of the output that is passed once, is no noise of it."""
+    eq: Any = SimpleNamespace(runs=[SimpleNamespace(procedure="speed")] * 3)
+    found = [Scatter((i, i), rms, 500, 0.0, np.ones(20), 100.0) for i, rms in enumerate((1.2e-3, 5e-3, 2e-3))]
+    white = {(0, "L"): 1e-3, (0, "M"): 1e-3}
+    made, _ = _as_sensors_tell(eq, found, "L", white)
+    assert [s.rms for s in made] == pytest.approx([1.2e-3, 2e-3, 2e-3])  # as much as the other runs have
+    assert made[1].swollen == pytest.approx(2.5)
+    assert [s.rms for s in _as_sensors_tell(eq, found, "M", white)[0]] == [1.2e-3, 5e-3, 2e-3]  # friction may do that
+    repeated = [replace(s, pair=(0, 1)) for s in found]
+    assert [s.rms for s in _as_sensors_tell(eq, repeated, "L", white)[0]] == [1.2e-3, 5e-3, 2e-3]
+
+
+@pytest.mark.parametrize(("sensors", "expected"), [(0.5e-3, 0.5e-3), (0.9e-3, 0.9e-3), (0.0, 0.933e-3)])
+def test_a_run_that_is_read_more_often_has_a_floor_of_its_own(sensors: float, expected: float) -> None:
+    """Of seven runs six are as noisy as their sensors and stand for the seventh, whose sensors leave less; unless
+    nothing is known of those."""
+    runs = [run_at(12.0 + i, 0.0) for i in range(7)]
+    runs[6].procedure, runs[6].counts_m = "quick", 0.0
+    by_run = {(i, "M"): 1e-3 for i in range(6)} | {(6, "M"): 0.3e-3}
+    white = {(0, "M"): 1e-3} | ({(6, "M"): sensors} if sensors else {})
+    of = Measured(Noise({"M": 1.03e-3}, {"M": 1.0}, {"M": 1e-3}), by_run, white, {}, dict.fromkeys(by_run, 500.0))
+    rows = {(i, "M"): SimpleNamespace(y=np.zeros(9), keep=np.ones(9, bool)) for i in range(7)}
+    eq: Any = SimpleNamespace(runs=runs, rows=rows)
+    assert floor_of(of, eq, (6, "M")) == pytest.approx(expected, rel=0.05)
+
+
+def test_a_search_goes_on_below_a_floor_that_is_many_times_the_noise_of_the_sensors() -> None:
+    """Repeats of the load torque that differ so much may be what a second mode rings by; friction scatters."""
+    floors = {(0, "L"): 1.0, (1, "L"): 0.2, (0, "M"): 1.0}
+    white = {(0, "L"): 0.1, (0, "M"): 0.1}
+    measured = Measured(Noise({}, {}, {}), {}, white, {}, {})
+    runs = [SimpleNamespace(procedure="speed"), SimpleNamespace(procedure="lock")]
+    p: Any = SimpleNamespace(measured=measured, eq=SimpleNamespace(runs=runs), floors=floors)
+    silence = vars(Prepared)["silence"].func(p)
+    assert silence == pytest.approx({(0, "L"): BEYOND * 0.1, (1, "L"): 0.2, (0, "M"): 1.0})

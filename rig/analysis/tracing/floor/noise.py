@@ -21,7 +21,7 @@ from rig.analysis.tracing.floor.rounded import rounded
 from rig.analysis.tracing.floor.stroke_by_stroke import beside_the_angle
 from rig.analysis.tracing.runs.alike import as_fast, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
-from rig.analysis.tracing.thresholds import TURNED_BACK
+from rig.analysis.tracing.thresholds import BEYOND, TURNED_BACK
 from rig.model.effect import Array
 
 FINEST = 1e-5  # of what a channel swings by, RMS: no rig repeats better, and numbers made up without noise do
@@ -94,7 +94,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     of_the_sensors = _white(design, np.where(np.arange(design.size) < len(BASELINE), solution.x, 0.0))
     for channel in WHOLE:
         found, words = _compared(eq, e, channel, pairs, among)
-        found, said = _no_quieter_than_sensors(eq, found, channel, of_the_sensors)
+        found, said = _as_sensors_tell(eq, found, channel, of_the_sensors)
         words += said
         if not found:
             if (left := _locked_alone(eq, e, channel)) is not None:
@@ -171,18 +171,30 @@ def _white(d: Design, x: Array) -> dict[Key, float]:
     return {key: float(np.sqrt(np.mean(d.noise_left(key, x) ** 2))) for key in d.noise}
 
 
-def _no_quieter_than_sensors(
+def _as_sensors_tell(
     eq: Equations, found: Sequence[Scatter], channel: str, white: Mapping[Key, float]
 ) -> tuple[list[Scatter], str]:
     """Scatter of single runs, with what their sensors' noise leaves where that is more: encoders round one turn as they
-    do the next where a turn is whole counts. And what is said where it is much more. Repeats begin elsewhere."""
+    do the next where a turn is whole counts. And what is said where it is much more. Repeats begin elsewhere. Of the
+    load torque, which is nothing but their noise, not many times that: what is missing may begin anew each turn."""
 
     def sensors(i: int) -> float:
         """RMS of the noise of run `i`, of those of its procedure where its own is not known, 0 where nobody's is."""
         like = [v for (j, c), v in white.items() if c == channel and eq.runs[j].procedure == eq.runs[i].procedure]
         return white.get((i, channel), float(np.sqrt(np.mean(np.square(like)))) if like else 0.0)
 
-    made = [replace(s, rms=max(s.rms, sensors(i))) if (i := s.pair[0]) == s.pair[1] else s for s in found]
+    over = [s.rms / least for s in found if s.pair[0] == s.pair[1] and (least := sensors(s.pair[0]))]
+    usual = max([1.0, *(x for x in over if x <= BEYOND)])
+
+    def believed(s: Scatter) -> Scatter:
+        """What sensors make at least, and of the load torque as much as in other runs where it is many times that."""
+        if s.pair[0] != s.pair[1] or not (least := sensors(s.pair[0])):
+            return s
+        if channel == "L" and s.rms > BEYOND * least:
+            return replace(s, rms=usual * least, swollen=s.rms / (usual * least))
+        return replace(s, rms=max(s.rms, least))
+
+    made = [believed(s) for s in found]
     much = any(new.rms > SWOLLEN * old.rms for new, old in zip(made, found, strict=True))
     return made, BY_SENSORS if much else ""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.optimize import nnls
@@ -34,14 +34,35 @@ def _of_its_kind(measured: Measured, eq: Equations, key: Key) -> float:
     of those of its procedure alone where they are enough: how much of it is left goes by the speed."""
     run, channel = key
     usual = [i for i, c in measured.by_run if c == channel and (i, c) not in measured.apart]
-    free = [i for i in usual if not eq.runs[i].locked and (i, channel) in eq.rows]
-    if eq.runs[run].locked or len(free) < 2 * ENOUGH:
-        return measured.noise.sigma[channel]
-    same = [i for i in free if eq.runs[i].procedure == eq.runs[run].procedure]
-    among = same if channel == "A" and len(same) >= 2 * ENOUGH else free
+    turning = [i for i in usual if not eq.runs[i].locked and (i, channel) in eq.rows]
+    every = measured.noise.sigma[channel]
+    if eq.runs[run].locked or len(turning) < 2 * ENOUGH:
+        return min(every, _with_its_sensors(measured, eq, key, every, usual))
+    same = [i for i in turning if eq.runs[i].procedure == eq.runs[run].procedure]
+    among = same if channel == "A" and len(same) >= 2 * ENOUGH else turning
     rows = [eq.rows[i, channel].y.size for i in among]
     pooled = float(np.sqrt(np.average([measured.by_run[i, channel] ** 2 for i in among], weights=rows)))
-    return min(pooled, measured.noise.sigma[channel])
+    return min(every, pooled, _with_its_sensors(measured, eq, key, pooled, among))
+
+
+def _with_its_sensors(measured: Measured, eq: Equations, key: Key, pooled: float, among: Sequence[int]) -> float:
+    """The floor `pooled` of the runs `among` with what sensor noise leaves of this one in the place of what it leaves
+    of theirs, where both are known: a run read four times as often has half of it."""
+    rows = [eq.rows[i, key[1]].y.size for i in among if (i, key[1]) in eq.rows]
+    theirs = [of_sensors(measured, eq, i, key[1]) for i in among if (i, key[1]) in eq.rows]
+    mine = of_sensors(measured, eq, *key)
+    if not rows or not mine or not all(theirs):
+        return pooled
+    return float(np.sqrt(max(pooled**2 + mine**2 - float(np.average(np.square(theirs), weights=rows)), mine**2)))
+
+
+def of_sensors(measured: Measured, eq: Equations, run: int, channel: str) -> float:
+    """RMS of what sensor noise leaves in a block, of its procedure where its own is not known; 0 of neither."""
+    if (run, channel) in measured.white:
+        return measured.white[run, channel]
+    procedure = eq.runs[run].procedure
+    like = [v for (i, c), v in measured.white.items() if c == channel and eq.runs[i].procedure == procedure]
+    return float(np.sqrt(np.mean(np.square(like)))) if like else 0.0
 
 
 def leniency(measured: Measured, eq: Equations, key: Key) -> float:
