@@ -233,6 +233,8 @@ def test_a_load_torque_many_times_as_noisy_as_its_sensors_is_no_floor() -> None:
     assert [s.rms for s in made] == pytest.approx([1.2e-3, 2e-3, 2e-3])  # as much as the other runs have
     assert made[1].swollen == pytest.approx(2.5)
     assert [s.rms for s in _as_sensors_tell(eq, found, "M", white)[0]] == [1.2e-3, 5e-3, 2e-3]  # friction may do that
+    alone, _ = _as_sensors_tell(eq, found[1:2], "L", white)
+    assert alone[0].rms == pytest.approx(BEYOND * 1e-3)  # nobody tells what is usual
     repeated = [replace(s, pair=(0, 1)) for s in found]
     assert [s.rms for s in _as_sensors_tell(eq, repeated, "L", white)[0]] == [1.2e-3, 5e-3, 2e-3]
 

@@ -184,7 +184,7 @@ def _as_sensors_tell(
         return white.get((i, channel), float(np.sqrt(np.mean(np.square(like)))) if like else 0.0)
 
     over = [s.rms / least for s in found if s.pair[0] == s.pair[1] and (least := sensors(s.pair[0]))]
-    usual = max([1.0, *(x for x in over if x <= BEYOND)])
+    usual = max((x for x in over if x <= BEYOND), default=BEYOND)
 
     def believed(s: Scatter) -> Scatter:
         """What sensors make at least, and of the load torque as much as in other runs where it is many times that."""
