@@ -24,7 +24,6 @@ from rig.analysis.tracing.runs.campaign import Campaign
 from rig.analysis.tracing.runs.holdout import Split, split
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.weights import refuse_odd_torques
-from rig.analysis.tracing.thresholds import BEYOND
 from rig.core.errors import UsageError
 from rig.core.units import RPM
 
@@ -56,9 +55,8 @@ class Prepared:
         """Floors of the fitted blocks below which nothing more is looked for. What repeats of the load torque differ by
         far beyond the noise of the readings is of a rig that answers otherwise each time: it may be what is missing."""
         sensors = {key: of_sensors(self.measured, self.eq, *key) for key in self.floors if key[1] == "L"}
-        return {
-            key: min(floor, BEYOND * sensors[key]) if sensors.get(key) else floor for key, floor in self.floors.items()
-        }
+        most = {key: self.measured.beyond * rms for key, rms in sensors.items() if rms}
+        return {key: min(floor, most.get(key, floor)) for key, floor in self.floors.items()}
 
 
 def prepare(campaign: Campaign, hold_out: Sequence[str], swapped: bool = False) -> Prepared:

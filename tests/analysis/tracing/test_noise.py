@@ -12,7 +12,7 @@ import pytest
 from rig.analysis.tracing.fit.equations import Noise
 from rig.analysis.tracing.floor import of_a_run
 from rig.analysis.tracing.floor.friction import Scattering
-from rig.analysis.tracing.floor.noise import Measured, _as_sensors_tell, finest
+from rig.analysis.tracing.floor.noise import Measured, _as_sensors_tell, _quietest, finest
 from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.floor.offsets import own_offset
 from rig.analysis.tracing.floor.outlying import outlying
@@ -228,15 +228,27 @@ def test_a_load_torque_many_times_as_noisy_as_its_sensors_is_no_floor() -> None:
     """What begins anew in every turn, as a rub at one angle of the output that is passed once, is no noise of it."""
     eq: Any = SimpleNamespace(runs=[SimpleNamespace(procedure="speed")] * 3)
     found = [Scatter((i, i), rms, 500, 0.0, np.ones(20), 100.0) for i, rms in enumerate((1.2e-3, 5e-3, 2e-3))]
-    white = {(0, "L"): 1e-3, (0, "M"): 1e-3}
-    made, _ = _as_sensors_tell(eq, found, "L", white)
+    white = {(0, "L"): 1e-3}
+    made, _ = _as_sensors_tell(eq, found, "L", white, BEYOND)
     assert [s.rms for s in made] == pytest.approx([1.2e-3, 2e-3, 2e-3])  # as much as the other runs have
     assert made[1].swollen == pytest.approx(2.5)
-    assert [s.rms for s in _as_sensors_tell(eq, found, "M", white)[0]] == [1.2e-3, 5e-3, 2e-3]  # friction may do that
-    alone, _ = _as_sensors_tell(eq, found[1:2], "L", white)
+    assert [s.rms for s in _as_sensors_tell(eq, found, "L", white)[0]] == [1.2e-3, 5e-3, 2e-3]
+    alone, _ = _as_sensors_tell(eq, found[1:2], "L", white, BEYOND)
     assert alone[0].rms == pytest.approx(BEYOND * 1e-3)  # nobody tells what is usual
     repeated = [replace(s, pair=(0, 1)) for s in found]
-    assert [s.rms for s in _as_sensors_tell(eq, repeated, "L", white)[0]] == [1.2e-3, 5e-3, 2e-3]
+    assert [s.rms for s in _as_sensors_tell(eq, repeated, "L", white, BEYOND)[0]] == [1.2e-3, 5e-3, 2e-3]
+
+
+@pytest.mark.parametrize(("left", "expected"), [((3.9e-3, 4.2e-3), 3.9), ((0.8e-3, 4.2e-3), 1.0), ((), 1.0)])
+def test_how_noisy_sensors_are_beside_their_roughness_is_told_by_the_quietest_run(
+    left: tuple[float, ...], expected: float
+) -> None:
+    eq: Any = SimpleNamespace(runs=[SimpleNamespace(procedure="speed")] * 2)
+    e = {(i, "L"): np.full(9, x) for i, x in enumerate(left)}
+    white = {(0, "L"): 1e-3}
+    assert _quietest(eq, e, "L", white, ()) == pytest.approx(expected)
+    differ = Scatter((0, 1), 2e-3, 500, 0.0, np.ones(20), 100.0)
+    assert _quietest(eq, e, "L", white, [differ]) == pytest.approx(min(expected, 2.0) if left else 2.0)
 
 
 @pytest.mark.parametrize(("sensors", "expected"), [(0.5e-3, 0.5e-3), (0.9e-3, 0.9e-3), (0.0, 0.933e-3)])
@@ -257,7 +269,7 @@ def test_a_search_goes_on_below_a_floor_that_is_many_times_the_noise_of_the_sens
     """Repeats of the load torque that differ so much may be what a second mode rings by; friction scatters."""
     floors = {(0, "L"): 1.0, (1, "L"): 0.2, (0, "M"): 1.0}
     white = {(0, "L"): 0.1, (0, "M"): 0.1}
-    measured = Measured(Noise({}, {}, {}), {}, white, {}, {})
+    measured = Measured(Noise({}, {}, {}), {}, white, {}, {}, beyond=BEYOND)
     runs = [SimpleNamespace(procedure="speed"), SimpleNamespace(procedure="lock")]
     p: Any = SimpleNamespace(measured=measured, eq=SimpleNamespace(runs=runs), floors=floors)
     silence = vars(Prepared)["silence"].func(p)

@@ -47,6 +47,7 @@ class Measured:
     apart: frozenset[Key] = frozenset()  # whose repeats differ by more than noise: no other condition's floor
     friction: Scattering = field(default_factory=Scattering)
     interval: dict[str, tuple[float, float]] = field(default_factory=dict)  # 95 %, of the RMS of a channel
+    beyond: float = np.inf  # times the noise of its sensors, from which on what L differs by is no noise
 
     def never_compared(self) -> list[str]:
         """What is said where the floor of a channel is all that was left in it."""
@@ -92,9 +93,12 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
     white = _white(design, solution.x)
     # terms that go by a reading, and trade what they explain, would add theirs many times
     of_the_sensors = _white(design, np.where(np.arange(design.size) < len(BASELINE), solution.x, 0.0))
+    beyond = np.inf
     for channel in WHOLE:
         found, words = _compared(eq, e, channel, pairs, among)
-        found, said = _as_sensors_tell(eq, found, channel, of_the_sensors)
+        if channel == "L":
+            beyond = BEYOND * _quietest(eq, e, channel, of_the_sensors, found)
+        found, said = _as_sensors_tell(eq, found, channel, of_the_sensors, beyond if channel == "L" else np.inf)
         words += said
         if not found:
             if (left := _locked_alone(eq, e, channel)) is not None:
@@ -127,7 +131,7 @@ def measure(solution: Solution, among: Sequence[int]) -> Measured:
         local["A"] = about_a_line(solution) or zeros
     turned = max((rms for (_, c), rms in white.items() if c == "R"), default=0.0)
     noise = _at_reversals(Noise(sigma, kappa, local), turned)
-    return Measured(noise, by_run, white, how, free, frozenset(apart), friction, interval)
+    return Measured(noise, by_run, white, how, free, frozenset(apart), friction, interval, beyond)
 
 
 def _locked_alone(eq: Equations, e: Mapping[Key, Array], channel: str) -> float | None:
@@ -171,26 +175,38 @@ def _white(d: Design, x: Array) -> dict[Key, float]:
     return {key: float(np.sqrt(np.mean(d.noise_left(key, x) ** 2))) for key in d.noise}
 
 
+def _of_sensors(eq: Equations, white: Mapping[Key, float], run: int, channel: str) -> float:
+    """RMS of the noise of a run, of those of its procedure where its own is not known, 0 where nobody's is."""
+    like = [v for (j, c), v in white.items() if c == channel and eq.runs[j].procedure == eq.runs[run].procedure]
+    return white.get((run, channel), float(np.sqrt(np.mean(np.square(like)))) if like else 0.0)
+
+
+def _quietest(
+    eq: Equations, e: Mapping[Key, Array], channel: str, white: Mapping[Key, float], found: Sequence[Scatter]
+) -> float:
+    """How many times the noise of its sensors, taken to be white, is left in the run that has least, or is what that
+    differs by; 1 at least. All of a pink noise is more than what is rough in it, in every run."""
+    left = [(i, _rms(e, [(i, c)])) for i, c in e if c == channel] + [(s.pair[0], s.rms) for s in found]
+    over = [rms / sensors for i, rms in left if (sensors := _of_sensors(eq, white, i, channel))]
+    return max(1.0, min(over, default=1.0))
+
+
 def _as_sensors_tell(
-    eq: Equations, found: Sequence[Scatter], channel: str, white: Mapping[Key, float]
+    eq: Equations, found: Sequence[Scatter], channel: str, white: Mapping[Key, float], beyond: float = np.inf
 ) -> tuple[list[Scatter], str]:
     """Scatter of single runs, with what their sensors' noise leaves where that is more: encoders round one turn as they
-    do the next where a turn is whole counts. And what is said where it is much more. Repeats begin elsewhere. Of the
-    load torque, which is nothing but their noise, not many times that: what is missing may begin anew each turn."""
-
-    def sensors(i: int) -> float:
-        """RMS of the noise of run `i`, of those of its procedure where its own is not known, 0 where nobody's is."""
-        like = [v for (j, c), v in white.items() if c == channel and eq.runs[j].procedure == eq.runs[i].procedure]
-        return white.get((i, channel), float(np.sqrt(np.mean(np.square(like)))) if like else 0.0)
-
-    over = [s.rms / least for s in found if s.pair[0] == s.pair[1] and (least := sensors(s.pair[0]))]
-    usual = max((x for x in over if x <= BEYOND), default=BEYOND)
+    do the next where a turn is whole counts. And what is said where it is much more. Repeats begin elsewhere. What is
+    `beyond` so many times that noise is none: what is missing may begin anew each turn."""
+    over = [
+        s.rms / least for s in found if s.pair[0] == s.pair[1] and (least := _of_sensors(eq, white, s.pair[0], channel))
+    ]
+    usual = max((x for x in over if x <= beyond), default=beyond)
 
     def believed(s: Scatter) -> Scatter:
-        """What sensors make at least, and of the load torque as much as in other runs where it is many times that."""
-        if s.pair[0] != s.pair[1] or not (least := sensors(s.pair[0])):
+        """What sensors make at least, and as much as in other runs where it is many times that."""
+        if s.pair[0] != s.pair[1] or not (least := _of_sensors(eq, white, s.pair[0], channel)):
             return s
-        if channel == "L" and s.rms > BEYOND * least:
+        if s.rms > beyond * least:
             return replace(s, rms=usual * least, swollen=s.rms / (usual * least))
         return replace(s, rms=max(s.rms, least))
 
@@ -240,7 +256,7 @@ def quieter(one: Measured, other: Measured) -> Measured:
     free = {key: nu for c, m in best.items() for key, nu in m.freedom.items() if key[1] == c}
     apart = frozenset(key for c, m in best.items() for key in m.apart if key[1] == c)
     interval = {c: m.interval[c] for c, m in best.items() if c in m.interval}
-    return Measured(noise, by_run, white, how, free, apart, best["M"].friction, interval)
+    return Measured(noise, by_run, white, how, free, apart, best["M"].friction, interval, best["L"].beyond)
 
 
 def _alone(
