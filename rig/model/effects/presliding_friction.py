@@ -12,8 +12,9 @@ from rig.model.effect import Array, Effect, Fit, Parameter, Port, Reach, Shape, 
 from rig.model.memory import play, presliding
 
 MOTOR, LOAD = 0.0, 1.0  # of the first shape parameter: whose friction
-# of the last: one bristle, elements side by side that slip one after the other, or bristles of several ways
-BRISTLE, ELEMENTS, BRISTLES = 0.0, 1.0, 2.0
+# of the last: one bristle, elements side by side that slip one after the other, bristles of several ways, or others
+# of those forward than backward
+BRISTLE, ELEMENTS, BRISTLES, EACH_WAY = 0.0, 1.0, 2.0, 3.0
 
 
 class PreslidingFriction(Effect):
@@ -26,13 +27,13 @@ class PreslidingFriction(Effect):
     after a reversal      [iwan1966]
 
     Bristles of several ways, τ_i over w_i, take any curve that is approached from where the last reversal left it, as
-    one that has a long tail.
+    one that has a long tail; and another one forward than backward, where a loop closes differently at its two ends.
     """
 
     name: ClassVar[str] = "presliding_friction"
     in_short: ClassVar[str] = "friction with memory around reversals"
     glosses: ClassVar[Mapping[str, str]] = {
-        "tau_presliding": "motor friction that builds up after a reversal; of several, of one that loses as much",
+        "tau_presliding": "motor friction that builds up after a reversal; of several all, or of one that loses as much",
         "tau_presliding_l": "load friction that builds up after a reversal",
         "x_0": "angle over which it builds up",
     }
@@ -51,7 +52,7 @@ class PreslidingFriction(Effect):
         """Ways longer than the motor, and the load with it, goes between two samples of the slowest run."""
         ways = [x for x in self.WAYS if x > 0.5 * reach.slowest / reach.rate]
         bristles = (*((MOTOR, x, BRISTLE) for x in ways), *((LOAD, x / reach.ratio, BRISTLE) for x in ways))
-        several = tuple((MOTOR, x, BRISTLES) for x in ways[1::2])
+        several = tuple((MOTOR, x, law) for law in (BRISTLES, EACH_WAY) for x in ways[1::2])
         return (*bristles, *((MOTOR, x, ELEMENTS) for x in ways[::2]), *several)
 
     def moved_by_noise(self, shape: Shape) -> bool:
@@ -72,9 +73,10 @@ class PreslidingFriction(Effect):
         if law == ELEMENTS:
             states = [_element(signals.theta_m, x_0 * share, start) for share in self.SPREAD]
             return {Port.MOTOR_TORQUE: np.stack(states, 1) - signals.way[:, None]}
-        if law == BRISTLES:
+        if law in (BRISTLES, EACH_WAY):
             states = [presliding(signals.theta_m, x_0 * share, start) for share in self.DECADES]
-            return {Port.MOTOR_TORQUE: np.stack(states, 1) - signals.way[:, None]}
+            missing = np.stack(states, 1) - signals.way[:, None]
+            return {Port.MOTOR_TORQUE: missing if law == BRISTLES else _each_way(missing, signals.way)}
         return {Port.MOTOR_TORQUE: (presliding(signals.theta_m, x_0, start) - signals.way)[:, None]}
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
@@ -89,28 +91,53 @@ class PreslidingFriction(Effect):
         )
 
     def _of_several(self, fit: Fit) -> tuple[Parameter, ...]:
-        """Of the one element that loses as much at a reversal, Σ τ_i·w_i, and over as long a way on the average: of a
-        short one beside longer ones neither its friction nor the sum of all is known."""
-        share = np.array(self.SPREAD if fit.shape[2] == ELEMENTS else self.DECADES)
-        c, x_0 = fit.coefficients, fit.shape[1]
-        lost, longer = float(share @ c) or 1e-300, float(share**2 @ c) or 1e-300
-        torque, way = np.zeros((2, fit.covariance.shape[0]))
-        torque[: c.size] = 2 * lost * share / longer - (lost * share / longer) ** 2
-        way[: c.size] = x_0 * (share**2 * lost - share * longer) / lost**2
-        way[c.size + 1] = longer / lost
-        return (
-            parameter("tau_presliding", lost**2 / longer, fit.half_width(torque), "N·m"),
-            parameter("x_0", x_0 * longer / lost, fit.half_width(way), "rad"),
-        )
+        """All that builds up, and over which way on the average; or where that is known better, as of a short one
+        beside longer ones, the one element that loses as much at a reversal, Σ τ_i·w_i, over as long a way. Of what is
+        another each way, the mean."""
+        share, ways = self._shares(fit), 2.0 if fit.shape[2] == EACH_WAY else 1.0
+        told = [_as_one(fit, share, power, ways) for power in (1, 0)]
+        return min(told, key=lambda words: _width(words[0]))
 
     def plausible(self, fit: Fit) -> bool:
         """Friction opposes: work is lost at a reversal."""
         if fit.shape[2] == BRISTLE:
             return bool(fit.coefficients[0] > 0)
-        return bool(np.array(self.SPREAD if fit.shape[2] == ELEMENTS else self.DECADES) @ fit.coefficients > 0)
+        return bool(self._shares(fit) @ fit.coefficients > 0)
+
+    def _shares(self, fit: Fit) -> Array:
+        """Of x_0, the way of each coefficient, (k,)."""
+        return np.array({ELEMENTS: self.SPREAD, BRISTLES: self.DECADES, EACH_WAY: 2 * self.DECADES}[fit.shape[2]])
+
+
+def _each_way(x: Array, way: Array) -> Array:
+    """Columns (n, k) forward, then backward, (n, 2k); where the way (n,) is not sure, as they are themselves."""
+    forward = np.where(way[:, None] != 0.0, way[:, None] > 0.0, x > 0.0)
+    return np.hstack([np.where(forward, x, 0.0), np.where(forward, 0.0, x)])
 
 
 def _element(theta: Array, way: float, start: float) -> Array:
     """From −1 to 1 (n,): a spring that slips after `way` rad, `start` at first."""
     gone = theta - theta[:1] + start * way
     return np.asarray((gone - play(gone, way)) / way)
+
+
+def _as_one(fit: Fit, share: Array, power: int, ways: float) -> tuple[Parameter, Parameter]:
+    """Several bristles or elements over `share` (k,) of x_0 as one: with M_j = Σ τ_i·share_iʲ, of the friction
+    M_p^(p+1)/M_(p+1)^p, over the way x_0·M_(p+1)/M_p."""
+    c, x_0 = fit.coefficients, fit.shape[1]
+    less, more = share**power, share ** (power + 1)
+    lost, longer = float(less @ c) or 1e-300, float(more @ c) or 1e-300
+    torque, way = np.zeros((2, fit.covariance.shape[0]))
+    ratio = lost / longer
+    torque[: c.size] = ((power + 1) * ratio**power * less - power * ratio ** (power + 1) * more) / ways
+    way[: c.size] = x_0 * (more * lost - less * longer) / lost**2
+    way[c.size + 1] = longer / lost
+    return (
+        parameter("tau_presliding", lost * ratio**power / ways, fit.half_width(torque), "N·m"),
+        parameter("x_0", x_0 * longer / lost, fit.half_width(way), "rad"),
+    )
+
+
+def _width(figure: Parameter) -> float:
+    """Of its interval, over itself."""
+    return (figure.ci95[1] - figure.ci95[0]) / max(abs(figure.value), 1e-300)

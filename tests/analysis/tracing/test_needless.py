@@ -23,7 +23,7 @@ def prepared(*own: str) -> Any:
 
 def scored(name: str, overall: float, **said: Any) -> Any:
     """A score of which nothing speaks for the name, but for what is said."""
-    so_far = {"as_repeats": False, "fairly": False, "plain": False, "all_there_is": False, "share": 0.7}
+    so_far = dict.fromkeys(("as_repeats", "fairly", "plain", "all_there_is", "is_foretold"), False) | {"share": 0.7}
     so_far["ground"] = ((0, "M"),)
     return SimpleNamespace(name=name, overall=overall, **(so_far | said))
 
@@ -87,6 +87,30 @@ def test_a_fall_that_is_all_there_is_stays_whatever_it_is_at_rest(
     monkeypatch.setattr(needless, "_without", lambda of, name, runs, covered: with_([], needed))
     nothing: Any = None
     assert needless.without_insignificant(with_(["stribeck"], False), (), nothing).names == left
+
+
+@pytest.mark.parametrize(("name", "foretold", "left"), [
+    ("slow_2", True, {"presliding"}), ("slow_1 (part held out)", True, set()), ("slow_2", False, set()),
+])  # fmt: skip
+def test_what_another_run_shows_as_it_was_foretold_is_not_nothing(
+    monkeypatch: pytest.MonkeyPatch, name: str, foretold: bool, left: set[str]
+) -> None:
+    """One run alone turned back among the fitted ones: its size is known to any number, and another run has just that
+    (exam 104, 24). A part of the same run vouches for nothing."""
+    monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: True)
+    p = prepared()
+    p.eq = SimpleNamespace(runs=[SimpleNamespace(name=name)])
+
+    def with_(names: list[str], loud: bool) -> Any:
+        scores = [scored(n, 20.0, is_foretold=foretold, ground=((0, "R"),)) for n in names]
+        effect = SimpleNamespace(sizes=lambda parameters: parameters[:1], shape_names=(), loose=())
+        s = solution("eq", *(SimpleNamespace(name=n, effect=effect) for n in names))
+        words = dict.fromkeys(names, (Parameter("tau_presliding", 0.1, (-0.1, 0.3), "N·m"),))
+        return SimpleNamespace(scores=scores, words=words, loud=loud, names=set(names), solution=s, p=p)
+
+    monkeypatch.setattr(needless, "_without", lambda of, n, runs, covered: with_([], True))
+    nothing: Any = None
+    assert needless.without_insignificant(with_(["presliding"], False), (), nothing).names == left
 
 
 @pytest.mark.parametrize(("known", "left"), [(False, {"weight"}), (True, {"weight", "runout", "spring"})])

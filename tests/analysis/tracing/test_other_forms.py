@@ -11,11 +11,12 @@ from scipy.optimize import least_squares
 
 from rig.model.effect import Array, Fit, Port
 from rig.model.effects.lost_motion import BY_ANGLE, LostMotion
-from rig.model.effects.presliding_friction import BRISTLES, ELEMENTS, MOTOR, PreslidingFriction
+from rig.model.effects.presliding_friction import BRISTLES, EACH_WAY, ELEMENTS, MOTOR, PreslidingFriction
 from rig.model.effects.stribeck_friction import StribeckFriction
 from rig.model.effects.thermal_friction_drift import ThermalFrictionDrift
 from rig.model.effects.torque_ripple import TorqueRipple
 from rig.model.effects.torsional_mode import DRIVEN, FLANGE, TorsionalMode
+from rig.model.memory import presliding
 from tests.contract.test_effects import KNOWN, N, motion
 
 
@@ -53,6 +54,34 @@ def test_bristles_take_a_friction_that_approaches_what_it_will_be_with_a_long_ta
     bristles = [effect.columns(s, (MOTOR, x, 0.0))[Port.MOTOR_TORQUE] for x in (0.05, 0.1, 0.2, 0.4, 0.8)]
     assert left(np.hstack([several, slid]), friction) < 0.03
     assert min(left(np.hstack([bristle, slid]), friction) for bristle in bristles) > 0.06
+
+
+def test_bristles_may_be_others_forward_than_backward() -> None:
+    """A friction that builds up over 0.05 rad forward and over 0.4 rad backward: no curve is both."""
+    t = 1e-3 * np.arange(12000)
+    theta = 2.0 * (1.0 - np.cos(np.pi * t / 3.0))  # to 4 rad and back, twice
+    way = np.sign(np.gradient(theta, 1e-3))
+    first, second = (presliding(theta, x, 0.0) for x in (0.05, 0.4))
+    friction = np.where(way > 0, first, second)
+    s = dataclasses.replace(motion(n=t.size), t=t, theta_m=theta, omega_m=np.gradient(theta, 1e-3), way=way)
+    later, slid = t > 3.0, way[:, None]
+    made = [PreslidingFriction().columns(s, (MOTOR, 0.1, law))[Port.MOTOR_TORQUE] for law in (EACH_WAY, BRISTLES)]
+    each, one = (left(np.hstack([x, slid])[later], friction[later]) for x in made)
+    assert each < 0.05
+    assert one > 0.15
+
+
+@pytest.mark.parametrize("law", [BRISTLES, EACH_WAY])
+def test_of_bristles_what_they_build_up_together_is_told_where_that_is_known_better(law: float) -> None:
+    """A long one that nobody saw the end of spoils what all of them lose, and hardly their sum."""
+    ways = 2 if law == EACH_WAY else 1
+    c = np.tile([0.05, 0.03, 0.0, 0.0], ways)
+    unsure = np.zeros((c.size + 3, c.size + 3))
+    unsure[c.size - 1, c.size - 1] = 0.004**2
+    friction, way = PreslidingFriction().parameters(Fit(c, (MOTOR, 0.1, law), unsure, KNOWN, N))
+    assert friction.value == pytest.approx(0.08)
+    assert not friction.holds_zero
+    assert way.value == pytest.approx(0.1 * (0.05 * 0.3 + 0.03 * 1.0) / 0.08)
 
 
 def test_of_elements_the_one_is_told_that_loses_as_much_at_a_reversal() -> None:

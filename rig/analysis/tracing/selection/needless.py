@@ -13,6 +13,7 @@ from rig.analysis.tracing.fit.search import polished, reduced
 from rig.analysis.tracing.floor.of_a_run import PAIRS
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.runs.alike import repeats
+from rig.analysis.tracing.runs.holdout import HELD_PART
 from rig.analysis.tracing.selection.confounders import CONFOUNDERS
 from rig.analysis.tracing.selection.elimination import backward_elimination, scales, unscaled
 from rig.analysis.tracing.selection.score import HeldOutScore
@@ -55,16 +56,22 @@ def without_insignificant(selected: Selected, runs: Sequence[int], covered: Reac
     nothing = {name for name in needless if may_be_nothing(effect[name], selected.words.get(name, ()))}
     few = _few_repeats(selected.p, runs)
     plain = {score.name for score in selected.scores if score.all_there_is and _is_known_roughly(selected, score.name)}
+    plain |= {score.name for score in selected.scores if score.is_foretold and _of_other_runs(selected, score)}
     for least in sorted(insignificant, key=lambda score: score.overall):
         fewer = _without(selected, least.name, runs, covered)
         gone = selected.names - fewer.names  # with one that leans on it, if that is not known either
         no_name = few and gone.isdisjoint(CONFOUNDERS)
         empty = gone <= nothing and (_says_nothing(selected, gone) or (selected.names > gone and fewer.left < QUIET))
         if gone <= plain and fewer.loud:
-            continue  # its size at rest, where no run was, may be any: that there is a fall is plain
+            continue  # of a fall its size at rest, where no run was, may be any: that there is one is plain
         if gone <= needless and (no_name or selected.loud or not fewer.loud or empty):
             return without_insignificant(fewer, runs, covered)
     return selected
+
+
+def _of_other_runs(selected: Selected, score: HeldOutScore) -> bool:
+    """Whether the held-out runs in which it shows are whole ones, of which the fit has seen no part."""
+    return all(HELD_PART not in selected.p.eq.runs[i].name for i, _ in score.ground)
 
 
 def _is_known_roughly(selected: Selected, name: str) -> bool:

@@ -99,6 +99,12 @@ class HeldOutScore:
         return self.size > WHATEVER and self.all_there_is
 
     @property
+    def is_foretold(self) -> bool:
+        """Whether it is large on the held-out blocks, and of the size there, nearly all of it, that the fitted ones
+        gave it: that it may be nothing is then said of a size that one run alone told, and wrong."""
+        return self.size > WHATEVER and self.share > ALL and abs(self.true - 1.0) < FAIRLY
+
+    @property
     def all_there_is(self) -> bool:
         """Whether it is large, of the size that it should be, and next to nothing is left in any channel it acts in:
         what may be left is another channel's, and it no part of that."""
