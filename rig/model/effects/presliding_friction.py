@@ -33,7 +33,7 @@ class PreslidingFriction(Effect):
     name: ClassVar[str] = "presliding_friction"
     in_short: ClassVar[str] = "friction with memory around reversals"
     glosses: ClassVar[Mapping[str, str]] = {
-        "tau_presliding": "motor friction that builds up after a reversal; of several all, or of one that loses as much",
+        "tau_presliding": "motor friction that builds up after a reversal; of several all, or one that loses as much",
         "tau_presliding_l": "load friction that builds up after a reversal",
         "x_0": "angle over which it builds up",
     }
