@@ -419,6 +419,26 @@ def test_what_a_torque_sensor_before_the_output_does_not_see_is_the_motors(
     assert found.coordinate == expected
 
 
+@pytest.mark.parametrize(
+    ("channel", "sensed", "order", "expected"),
+    [("L", True, 0.393, "load_angle"), ("L", True, 0.5, "motor_angle"), ("L", True, 1.393, "motor_angle"),
+     ("M", True, 0.393, "motor_angle"), ("L", False, 0.393, "motor_angle")],
+)  # fmt: skip
+def test_what_a_torque_sensor_sees_less_than_once_a_turn_of_the_motor_is_the_outputs(
+    channel: str, sensed: bool, order: float, expected: str
+) -> None:
+    """A slug that slips in a drum goes by the way of the output, 19.65 times a turn; but every second turn of the motor
+    is the motor's."""
+    motor = np.linspace(0.0, 900.0, 4000)
+    at = {"motor_angle": motor, "load_angle": motor / 50.0}
+    r = Rest(np.ones(4000), np.zeros(4000), at, DT, np.zeros((4000, 0)), np.zeros((0, 0)), sensed=sensed)
+    found = of_the_output(Home("motor_angle", channel, 1.0, order=order), r)
+    assert (found.coordinate, found.order) == (
+        expected,
+        pytest.approx(50 * order if expected == "load_angle" else order),
+    )
+
+
 @pytest.mark.parametrize(("order", "expected"), [(3.46, "load_angle"), (9.46, "motor_angle"), (1.5, "motor_angle")])
 def test_neither_too_many_teeth_nor_two_turns_of_the_motor_are_the_outputs(order: float, expected: str) -> None:
     motor = np.linspace(0.0, 900.0, 4000)

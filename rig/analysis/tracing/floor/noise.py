@@ -18,6 +18,7 @@ from rig.analysis.tracing.floor.offsets import own_angle, own_offset
 from rig.analysis.tracing.floor.outlying import outlying
 from rig.analysis.tracing.floor.repeats import Scatter, effective, scatter
 from rig.analysis.tracing.floor.rounded import rounded
+from rig.analysis.tracing.floor.steady import steady
 from rig.analysis.tracing.floor.stroke_by_stroke import beside_the_angle
 from rig.analysis.tracing.runs.alike import as_fast, repeats
 from rig.analysis.tracing.runs.holdout import whole_run
@@ -184,9 +185,9 @@ def _of_sensors(eq: Equations, white: Mapping[Key, float], run: int, channel: st
 def _quietest(
     eq: Equations, e: Mapping[Key, Array], channel: str, white: Mapping[Key, float], found: Sequence[Scatter]
 ) -> float:
-    """How many times the noise of its sensors, taken to be white, is left in the run that has least, or is what that
-    differs by; 1 at least. All of a pink noise is more than what is rough in it, in every run."""
-    left = [(i, _rms(e, [(i, c)])) for i, c in e if c == channel] + [(s.pair[0], s.rms) for s in found]
+    """How many times the noise of its sensors, taken to be white, is left all the time in the run that has least, or is
+    what that differs by; 1 at least. All of a pink noise is more than what is rough in it, in every run."""
+    left = [(i, steady(e[i, c])) for i, c in e if c == channel] + [(s.pair[0], s.rms) for s in found]
     over = [rms / sensors for i, rms in left if (sensors := _of_sensors(eq, white, i, channel))]
     return max(1.0, min(over, default=1.0))
 
@@ -200,7 +201,7 @@ def _as_sensors_tell(
     over = [
         s.rms / least for s in found if s.pair[0] == s.pair[1] and (least := _of_sensors(eq, white, s.pair[0], channel))
     ]
-    usual = max((x for x in over if x <= beyond), default=beyond)
+    usual = float(np.median([x for x in over if x <= beyond] or [beyond]))
 
     def believed(s: Scatter) -> Scatter:
         """What sensors make at least, and as much as in other runs where it is many times that."""

@@ -17,7 +17,7 @@ def of_the_output(found: Home, r: Rest) -> Home:
     """An order of the motor that is none of its own, but a whole one of the output's turn, and no lobe of the wave
     generator seen from the flexspline: the teeth of something on the output, which are no more than the gear's own
     twice over. What a torque sensor before the output does not see is on the motor: a belt goes round less than once a
-    turn."""
+    turn. What it does see, less than once a turn of the motor, goes by the way of the output, whole order or not."""
     ratio = ratio_of(r)
     if found.coordinate != "motor_angle" or not found.order or not ratio or (found.channel == "M" and r.sensed):
         return found
@@ -27,6 +27,8 @@ def of_the_output(found: Home, r: Rest) -> Home:
     plain = off[1] < WHOLE_ORDER and off[0] > WHOLE_ORDER / 2 and off[2] > WHOLE_ORDER / 2
     if few and plain and not every_second_turn(whole, ratio):
         return replace(found, coordinate="load_angle", order=float(round(whole)))
+    if abs(own) < 1 - WHOLE_ORDER and found.channel == "L" and r.sensed and not every_second_turn(whole, ratio):
+        return replace(found, coordinate="load_angle", order=whole)
     return found
 
 
