@@ -65,7 +65,7 @@ class Teller(Observer):
         """The page is told where the rows are."""
         procedure = run.procedure
         self.status.run = {
-            "uid": manifest.read(run.folder)["uid"], "procedure": procedure.name, "title": procedure.title(),
+            "uid": manifest.as_written(run.folder)["uid"], "procedure": procedure.name, "title": procedure.title(),
             "duration": run.duration, "locked": procedure.output_locked, "parameters": _parameters(procedure),
             "folder": str(run.folder), "ring": str(run.ring),
         }  # fmt: skip
