@@ -55,7 +55,7 @@ class Teller(Observer):
         if kind in ("state", "trip", "operator"):
             self.tell()
 
-    def tripped(self, why: str) -> None:
+    def tripped(self, why: str, t: float | None) -> None:
         """A drive that is gone confirms nothing, and finding that out takes its time: the page is told before."""
         self.status.state = str(State.FAULT)
         self.status.fault = f"{why}; torque off is commanded, the drive has not yet confirmed it"
