@@ -188,7 +188,8 @@ def test_the_folder_of_a_campaign_in_place_of_a_plan_is_told_how_it_is_gone_on_w
         assert main(["campaign", named]) == 2
         said = capsys.readouterr().err
         expected = f"{named} is the folder of a campaign, expected a plan; hdrig campaign --resume {named} goes on"
-        assert said.startswith(f"hdrig: {expected}") and said.count("\n") == 1
+        assert said.startswith(f"hdrig: {expected}")
+        assert said.count("\n") == 1
 
 
 def test_a_dry_run_prints_the_margins_and_writes_nothing(

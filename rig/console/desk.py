@@ -83,8 +83,8 @@ class ActDesk:
         return self.gate.refuse(asked, page, rights(self.link.picture, self.gate, page))
 
     async def _in_turn(self, act: str, asked: Mapping[str, Any], page: str) -> Answer:
-        """A hold, and who takes control, wait for no other act; any other one is looked at once more when it is its turn:
-        the one before may have been done.
+        """A hold, and who takes control, wait for no other act. Any other one is looked at once more when it is its
+        turn: the one before may have been done.
         """
         if act == "hold":
             return await self._press(act)

@@ -48,8 +48,8 @@ class Missing(Damaged):
 
 
 def read(folder: Path) -> Manifest:
-    """The manifest of `folder` as everybody goes by it: its `backend` is "sim" also where only the samples say that they
-    are the twin's, see `origin`. Raises what `as_written` does.
+    """The manifest of `folder` as everybody goes by it: its `backend` is "sim" also where only the samples say that
+    they are the twin's, see `origin`. Raises what `as_written` does.
     """
     return with_origin(folder, as_written(folder))
 
