@@ -24,6 +24,7 @@ from rig.timing.ticks import LoopTiming
 
 MOSTLY = 0.5  # of the age of stale data: a program that was away for less is not why they are stale
 AS_LONG = 0.8  # of the longest a channel may be silent: all that fell silent with the one that trips are named
+TENTH_MS = 1e-4  # s: two times less apart than that are told as one
 LONG = 0.01  # s without a command: by less no gains that hold a reference lose it
 RECENT = 0.5  # s after which what a stall has done has swung out
 LATCHES = 3  # in one tick at most: a machine that is away each time cannot run a loop
@@ -270,10 +271,15 @@ class Loop:
         return trip._replace(sentence="; ".join([trip.sentence, *told]))
 
     def _held_up(self, now: float, age: float) -> str:
-        """That this program itself was away for most of the last `age` s: its devices may have spoken meanwhile."""
+        """That this program itself was away for most of the last `age` s: its devices may have spoken meanwhile. It may
+        have been away longer than that: what was read last had come while it was.
+        """
         back, late = self.away
-        mostly = back > now - age and late > MOSTLY * age
-        return f"this program itself was held up for {late * 1e3:.1f} ms of it" if mostly else ""
+        part = min(late, back - (now - age))
+        if part <= MOSTLY * age:
+            return ""
+        more = f" ({late * 1e3:.1f} ms in all)" if late > part + TENTH_MS else ""
+        return f"this program itself was held up for {part * 1e3:.1f} ms of it{more}"
 
     def _stalled(self, now: float) -> str:
         """That this program itself was away so long a while ago that the motor may have lost its reference by it."""

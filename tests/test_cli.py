@@ -119,6 +119,13 @@ def test_no_word_is_offered_for_no_can_bus_that_would_be_taken_for_the_name_of_o
             ["run", "kinematic-error", "--with", "amplitude_deg=9rad"],
             ["amplitude_deg = 9rad: expected a number in deg"],
         ),
+        (["run", "friction", "--with", "speeds_rpm=0,5"], ["speeds_rpm = 0,5: expected speeds above 0 rpm, divided"]),
+        (["run", "jog", "--with", "turns=0"], ["expected up to 10 turns of the motor, either way, and not 0"]),
+        (
+            ["run", "full-turn", "--with", "turns=1e6"],
+            ["turns = 1000000.0: expected a whole number in digits alone, 1000000, for"],
+        ),
+        (["run", "full-turn", "--with", "turns=2.5"], ["turns = 2.5: expected a whole number, for example 1"]),
         (["run", "kinematic-error", "--with", "frequency=0,01"], ["frequency = 0,01: expected a decimal point, 0.01"]),
         (["run", "kinematic-error", "--with", "amplitude_deg=1,440"], ["1.440, or no comma between thousands, 1440"]),
         (
@@ -168,6 +175,21 @@ def test_a_wrong_command_line_is_one_sentence_and_exit_2_and_writes_nothing(
     for word in words:
         assert word in err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_folder_of_a_campaign_in_place_of_a_plan_is_told_how_it_is_gone_on_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "0718-campaign-quick"
+    folder.mkdir()
+    (folder / "campaign.json").write_text("{}")
+    for named in (str(folder), folder.name):
+        assert main(["campaign", named]) == 2
+        said = capsys.readouterr().err
+        expected = f"{named} is the folder of a campaign, expected a plan; hdrig campaign --resume {named} goes on"
+        assert said.startswith(f"hdrig: {expected}")
+        assert said.count("\n") == 1
 
 
 def test_a_dry_run_prints_the_margins_and_writes_nothing(

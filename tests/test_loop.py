@@ -478,6 +478,25 @@ def test_stale_data_say_whether_the_program_itself_was_away_meanwhile(held: floa
     assert reason.split("; ")[1:] == words
 
 
+@pytest.mark.parametrize(
+    ("ago", "late", "words"),
+    [
+        (0.0, 0.168, "this program itself was held up for 105.5 ms of it (168.0 ms in all)"),
+        (0.0, 0.1055, "this program itself was held up for 105.5 ms of it"),
+        (0.0, 0.080, "this program itself was held up for 80.0 ms of it"),
+        (0.040, 0.168, "this program itself was held up for 65.5 ms of it (168.0 ms in all)"),
+        (0.060, 0.168, ""),  # most of it was before
+    ],
+)
+def test_no_part_of_a_silence_is_told_as_longer_than_the_whole(ago: float, late: float, words: str) -> None:
+    """A silence of 105.5 ms was said to be 168.0 ms of it."""
+    bench = Bench()
+    guard = Guard(LIMITS, Constant().envelope(SETTING), 50.0)
+    loop = Loop(bench.instruments, bench.supervisor, guard, bench.sink, bench.interrupts, bench.timing)
+    loop._skipped(10.0 - ago, late, 0.001)
+    assert loop._held_up(10.0, 0.1055) == words
+
+
 @pytest.mark.parametrize(("held", "ago", "told"), [(0.0, 0, False), (0.004, 20, False), (0.073, 20, True)])
 def test_a_motor_that_lost_its_reference_says_whether_the_program_was_away_before(
     held: float, ago: int, told: bool

@@ -12,6 +12,7 @@ from typing import Any
 from rig.core import numbers
 from rig.runfile.manifest import digest_of, of_no_use
 from rig.runfile.misfits import misfits, misfits_of_ours, notes, usable
+from rig.runfile.origin import SIM
 
 UNREADABLE = "unreadable"  # the status of a run whose manifest is damaged
 NO_LIMIT = "no-limit"  # the verdict of figures nobody set a limit for; manifests say MEASURED, also of the twin's
@@ -43,7 +44,7 @@ class Row:
     @property
     def simulated(self) -> bool:
         """True for the twin, also over a wire."""
-        return self.backend == "sim"
+        return self.backend == SIM
 
     @property
     def origin(self) -> str:

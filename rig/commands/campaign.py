@@ -14,6 +14,7 @@ from rig.bench import read as read_bench
 from rig.campaign import dry_run, summary
 from rig.campaign.changes import ByHand, deeds
 from rig.campaign.figures import write_missing_figures
+from rig.campaign.journal import NAME as JOURNAL
 from rig.campaign.journal import Journal, new_journal, read_journal, refuse_other_campaign
 from rig.campaign.leaving import swept
 from rig.campaign.lost import lost_runs, still_to_make
@@ -78,7 +79,15 @@ def _run(args: argparse.Namespace) -> int:
         raise UsageError("--skip goes with --resume: leave the step out of the plan instead")
     if args.plan is None:
         raise UsageError("name a plan, or a campaign to go on with by --resume FOLDER")
+    _refuse_campaign(args.plan)
     return begin(read_plan(args.plan), args)
+
+
+def _refuse_campaign(named: str) -> None:
+    """Raises UsageError where the folder of a campaign was named in place of a plan."""
+    if (Path(named) / JOURNAL).is_file():
+        resumed = f"hdrig campaign --resume {shlex.quote(named)}"
+        raise UsageError(f"{named} is the folder of a campaign, expected a plan; {resumed} goes on with it")
 
 
 def begin(plan: Plan, args: argparse.Namespace) -> int:

@@ -10,6 +10,7 @@ from typing import Any
 
 from rig.core.errors import Exit, HdrigError, UsageError, said_of
 from rig.runfile.listing import runs_in
+from rig.runfile.origin import SIM
 
 
 def runs_argument(parser: argparse.ArgumentParser) -> None:
@@ -34,7 +35,7 @@ def for_each(folders: list[Path], act: Callable[[Path], Exit]) -> int:
 
 def say_simulated(folder: Path, manifest: Mapping[str, Any]) -> None:
     """On stderr, where the samples are the twin's: stdout is the path of what is made of them, and no more."""
-    if manifest.get("backend") == "sim":
+    if manifest.get("backend") == SIM:
         print(f"SIMULATED: {folder} was recorded on the twin", file=sys.stderr)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from rig.commands.folders import expand, for_each
 from rig.commands.folders import runs_argument as arguments
 from rig.commands.list_ import say
-from rig.core.errors import Exit
+from rig.core.errors import Exit, UsageError
 
 __all__ = ["arguments", "run"]
 
@@ -24,7 +24,19 @@ def verify_one(folder: Path) -> Exit:
 
     findings = verify(folder)
     broken = any(finding.level == "error" for finding in findings)
-    say(f"{folder.resolve().name}: {'BROKEN' if broken else 'sound'}")
+    simulated = "SIMULATED " if _is_simulated(folder) else ""
+    say(f"{simulated}{folder.resolve().name}: {'BROKEN' if broken else 'sound'}")
     for finding in findings:
         say(f"  {finding.level:7s} {finding.sentence}")
     return Exit.INCOMPLETE if broken else Exit.PASS
+
+
+def _is_simulated(folder: Path) -> bool:
+    """By its manifest, and where that cannot be read by its samples."""
+    from rig.runfile import manifest
+    from rig.runfile.origin import SIM, samples_are_simulated
+
+    try:
+        return manifest.read(folder).get("backend") == SIM
+    except UsageError:
+        return samples_are_simulated(folder)

@@ -1,4 +1,8 @@
-"""What happens to a POST: asked of the gate, then of the station; halt goes straight to the switches."""
+"""What happens to a POST: asked of the gate, then of the station; halt goes straight to the switches.
+
+What is refused changes nothing: control and a new revision come with what is done. That two clicks on one state are not
+both done, acts are decided one after the other.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +33,7 @@ class ActDesk:
         self.link, self.gate, self.offered = link, gate, offered
         self._under_way: dict[str, tuple[object, asyncio.Future[Answer]]] = {}  # by id: which act
         self._based_on: tuple[object, ...] = ()
+        self._turn = asyncio.Lock()
 
     def look(self) -> None:
         """The station told something: a new revision when it is something that acts are based on."""
@@ -55,13 +60,12 @@ class ActDesk:
         if key in self._under_way:
             first, answered = self._under_way[key]
             return await asyncio.shield(answered) if first == act else self._with_revision(self.gate.used(first))
-        why = self.gate.refuse(asked, page, rights(self.link.picture, self.gate, page))
-        if why:
+        if why := self._against(asked, page):
             return self._with_revision(Answer.no(why))
         waiting: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
         self._under_way[key] = (act, waiting)
         try:
-            answer = self._with_revision(await self._carry_out(str(act), asked, page))
+            answer = self._with_revision(await self._in_turn(str(act), asked, page))
         except BaseException:
             waiting.cancel()
             raise
@@ -74,21 +78,46 @@ class ActDesk:
         """The present one, but an answer given before keeps its own."""
         return Answer(answer.status, {"revision": self.gate.revision, **answer.body})
 
-    async def _carry_out(self, act: str, asked: Mapping[str, Any], page: str) -> Answer:
+    def _against(self, asked: Mapping[str, Any], page: str) -> str:
+        """Why an act does not pass on the state there is now; "" when it does."""
+        return self.gate.refuse(asked, page, rights(self.link.picture, self.gate, page))
+
+    async def _in_turn(self, act: str, asked: Mapping[str, Any], page: str) -> Answer:
+        """A hold, and who takes control, wait for no other act. Any other one is looked at once more when it is its
+        turn: the one before may have been done.
+        """
         if act == "hold":
             return await self._press(act)
-        self.gate.take(page)
-        self.gate.passed()  # a second click is based on what was before the first
         if act == CONTROL:
-            self.link.events.append(
-                {"t": None, "utc": utc_now(), "kind": "said", "text": "another page has taken control"}
-            )
-            self.link.changed()
+            return self._take_control(page)
+        async with self._turn:
+            if why := self._against(asked, page):
+                return Answer.no(why)
+            based_on = self.gate.revision
+            why = await self._wrong(act, asked)
+            if not why:
+                why = await self.link.act({key: asked[key] for key in FORWARDED if key in asked})
+            if why:
+                return Answer.no(why)
+            self._done(page, based_on)
             return Answer.yes()
-        why = await self._wrong(act, asked)
-        if not why:
-            why = await self.link.act({key: asked[key] for key in FORWARDED if key in asked})
-        return Answer.no(why) if why else Answer.yes()
+
+    def _take_control(self, page: str) -> Answer:
+        self.gate.take(page)
+        self.gate.passed()
+        self.link.events.append({"t": None, "utc": utc_now(), "kind": "said", "text": "another page has taken control"})
+        self.link.changed()
+        return Answer.yes()
+
+    def _done(self, page: str, based_on: int) -> None:
+        """Who had an act done on revision `based_on` holds control, unless another page took it meanwhile; a second
+        click is based on what was before the first, also where the station told nothing new.
+        """
+        if self.gate.holds(page):
+            self.gate.take(page)
+        if self.gate.revision == based_on:
+            self.gate.passed()
+        self.link.changed()
 
     async def _press(self, act: str) -> Answer:
         """Nobody is told that a motor was stopped by a process that is gone."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rig.core.errors import DataError
 from rig.runfile.manifest import told
+from rig.runfile.origin import SIM
 
 if TYPE_CHECKING:
     from rig.analysis.across_runs.assembly_band import AssemblyRun
@@ -95,7 +96,7 @@ def _kept(folder: Path, result: Result, lines: Sequence[str]) -> Sweep:
             summary.write("\n" + "\n".join(lines) + "\n")
         write_result(folder, result)
         write(folder, about, {}, [], result)
-    return Sweep(result, lines, about.get("backend") == "sim")
+    return Sweep(result, lines, about.get("backend") == SIM)
 
 
 def manifest_of(folder: Path, result: Result) -> dict[str, Any]:

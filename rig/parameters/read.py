@@ -106,10 +106,17 @@ def _value(field: Field[Any], raw: Any) -> Any:
     if wanted is str and one:  # a list written as text, of one: 900 for "900"
         return f"{_number(raw, signed=True):.12g}"
     if not isinstance(raw, wanted) or isinstance(raw, bool) is not (wanted is bool):
-        raise _RefusedError(raw, WORDS.get(wanted, wanted.__name__))
+        raise _RefusedError(raw, _spelt(raw) if wanted is int else WORDS.get(wanted, wanted.__name__))
     if isinstance(raw, int) and not isinstance(raw, bool):
         _number(raw, signed)
     return raw
+
+
+def _spelt(raw: Any) -> str:
+    """What is expected where a whole number is wanted: of 1e6 and 2.0, which are whole, that they are spelt so."""
+    if isinstance(raw, float) and raw.is_integer() and abs(raw) < LARGEST:
+        return f"{WORDS[int]} in digits alone, {raw:.0f}"
+    return WORDS[int]
 
 
 def _listed(text: str) -> Any:

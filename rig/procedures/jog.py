@@ -45,7 +45,8 @@ class Jog(Procedure):
 
     def __post_init__(self) -> None:
         if not 0.0 < abs(self.turns) <= MOST_TURNS:
-            raise UsageError(f"turns = {self.turns:g}: expected up to {MOST_TURNS:g} turns of the motor, either way")
+            expected = f"expected up to {MOST_TURNS:g} turns of the motor, either way, and not 0"
+            raise UsageError(f"turns = {self.turns:g}: {expected}")
         if not 0.0 < self.speed_rpm <= MOST_RPM:
             raise UsageError(f"speed_rpm = {self.speed_rpm:g}: expected up to {MOST_RPM:g} rpm of the motor")
 

@@ -14,5 +14,5 @@ def speeds_of(speeds_rpm: str) -> tuple[float, ...]:
     except ValueError:
         speeds = ()
     if not speeds or not all(0.0 < speed < math.inf for speed in speeds):
-        raise UsageError(f"speeds_rpm = {speeds_rpm}: expected speeds in rpm, divided by commas")
+        raise UsageError(f"speeds_rpm = {speeds_rpm}: expected speeds above 0 rpm, divided by commas")
     return speeds

@@ -53,7 +53,7 @@ def _be_ordinary() -> None:
 
 
 def _record(folder: Path, ring: Ring) -> None:
-    about = manifest.read(folder)
+    about = manifest.as_written(folder)
     if about["status"] != "running":
         raise HdrigError(f"{folder} is {about['status']}: nothing more can be recorded into it")
     layout = schema_of(about)

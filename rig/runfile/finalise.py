@@ -58,7 +58,7 @@ def finalise(
     Raises UsageError when the run is closed already, DataError when a file cannot be
     written; it can then be called again, or `recover` later.
     """
-    about = manifest.read(folder)
+    about = manifest.as_written(folder)
     if is_closed(about):
         raise UsageError(f"{folder} is closed already, as {about['status']}: {about.get('exit_reason', '')}")
     if status not in manifest.ENDINGS:
@@ -189,7 +189,7 @@ def add_derived(folder: Path, *names: str, **facts: Any) -> None:
 
     `facts` are keys of the manifest that go with them (`verdict="pass"`). Raises UsageError for a raw file, DataError.
     """
-    about = manifest.read(folder)
+    about = manifest.as_written(folder)
     for name in names:
         if folder / name in raw_files(folder):
             raise UsageError(f"{name} of {folder} is raw data: it is entered once, when the run is closed")

@@ -13,6 +13,7 @@ from typing import Any
 from rig.core.errors import HdrigError, UsageError, of_place, said_of
 from rig.core.numbers import number
 from rig.core.regular import regular
+from rig.runfile.origin import with_origin
 from rig.runfile.remains import SAMPLES, hold_samples
 
 SCHEMA = "hdrig.run/1"
@@ -47,7 +48,14 @@ class Missing(Damaged):
 
 
 def read(folder: Path) -> Manifest:
-    """The manifest of `folder`; a null is as good as an absent key.
+    """The manifest of `folder` as everybody goes by it: its `backend` is "sim" also where only the samples say that
+    they are the twin's, see `origin`. Raises what `as_written` does.
+    """
+    return with_origin(folder, as_written(folder))
+
+
+def as_written(folder: Path) -> Manifest:
+    """The manifest of `folder` as its file has it, for who changes or checks it; a null is as good as an absent key.
 
     Raises UsageError when there is none, it is JSON of another schema, or a key holds what it cannot; Damaged when it
     is no object in JSON, Missing when there are samples and none.
@@ -195,7 +203,7 @@ def write(folder: Path, manifest: Mapping[str, Any]) -> None:
 
 def update(folder: Path, **changes: Any) -> Manifest:
     """Change some keys; None removes a key. Returns the manifest as it is now. Raises OSError, UsageError."""
-    manifest = {k: v for k, v in (read(folder) | changes).items() if v is not None}
+    manifest = {k: v for k, v in (as_written(folder) | changes).items() if v is not None}
     write(folder, manifest)
     return manifest
 

@@ -68,7 +68,7 @@ def recover(folder: Path, step: StepHook = lambda name: None) -> Recovery:
 def _manifest(folder: Path) -> tuple[manifest.Manifest, str]:
     """The manifest, and what is to be said where it had to be rebuilt."""
     try:
-        return manifest.read(folder), ""
+        return manifest.as_written(folder), ""
     except manifest.Damaged as damage:
         about = rebuild(folder, damage)
         return about, f"; {about['exit_reason']}"

@@ -18,6 +18,7 @@ from rig.core.rows import stretches
 from rig.runfile import manifest as manifests
 from rig.runfile.columns import Array
 from rig.runfile.misfits import misfits, misfits_of_ours, mistyped, usable
+from rig.runfile.origin import SIM
 from rig.runfile.samples import Samples, open_samples
 from rig.runfile.text_path import refuse_no_text
 from rig.runfile.thermometer import TEMPERATURE, Thermometer, thermometer
@@ -94,7 +95,7 @@ class Run:
     @property
     def simulated(self) -> bool:
         """True when the samples came from the twin."""
-        return self.manifest.get("backend") == "sim"
+        return self.manifest.get("backend") == SIM
 
     @property
     def started(self) -> datetime | None:

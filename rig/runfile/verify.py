@@ -19,6 +19,7 @@ from rig.runfile.finalise import describe, is_closed, lost_rows, raw_files
 from rig.runfile.finding import Finding
 from rig.runfile.journal import JournalReader
 from rig.runfile.misfits import misfits, misfits_of_ours, mistyped
+from rig.runfile.origin import SIM
 from rig.runfile.process import is_being_made
 from rig.runfile.promised import time_untold
 from rig.runfile.remains import advice, journal_files
@@ -37,7 +38,7 @@ def verify(folder: Path) -> list[Finding]:
     is no run folder at all, or a file of it may not be read.
     """
     try:
-        about = manifest.read(folder)
+        about = manifest.as_written(folder)
     except manifest.Damaged as damage:
         return [Finding("error", "manifest", said_of(folder, damage))]
     findings = [*_status(folder, about), *_hashes(folder, about), *_read_only(folder, about)]
@@ -51,9 +52,9 @@ def verify(folder: Path) -> list[Finding]:
         if isinstance(error, DataError) and error.exit is Exit.USAGE:  # nobody may read them: as of a hash
             raise
         return [*findings, Finding("error", "samples", str(error))]
-    for check in (_rows, _time, _gaps, _flags, values, _backend, _journal):
+    for check in (_rows, _time, _gaps, _flags, values, _journal):
         findings += check(run)
-    return findings
+    return [*findings, *_backend(run, about)]
 
 
 def _is_foreign(about: Mapping[str, Any]) -> bool:
@@ -185,14 +186,22 @@ def _flags(run: Run) -> Iterator[Finding]:
             yield Finding("note", "flags", f"{count} of {run.rows} rows are flagged {flag.name}")
 
 
-def _backend(run: Run) -> Iterator[Finding]:
-    """Simulated and measured rows never mix, and the manifest says which they are."""
-    if not run.has("flags") or not run.rows or run.manifest.get("backend") is None or _is_foreign(run.manifest):
+def _backend(run: Run, about: Mapping[str, Any]) -> Iterator[Finding]:
+    """Simulated and measured rows never mix, and the manifest says which they are: `about` as it is written, the run
+    having the samples' word for it where they say that they are the twin's.
+    """
+    said = about.get("backend")
+    if said is None:
+        return
+    if run.simulated and said != SIM:
+        twins = f"{run.samples.path.name} says that its samples are simulated"
+        expected = f"expected {SIM!r}; the run counts as simulated"
+        yield Finding("warning", "backend", f"{twins}, and {manifest.NAME} that the backend is {said!r}, {expected}")
+    if not run.has("flags") or not run.rows or _is_foreign(about):
         return
     simulated = int(np.count_nonzero(run.flags & int(Flag.SIMULATED)))
-    if simulated != (run.rows if run.simulated else 0):
-        backend = run.manifest["backend"]
-        yield Finding("error", "backend", f"{simulated} of {run.rows} rows are simulated, the backend is {backend!r}")
+    if simulated != (run.rows if said == SIM else 0):
+        yield Finding("error", "backend", f"{simulated} of {run.rows} rows are simulated, the backend is {said!r}")
 
 
 def _journal(run: Run) -> Iterator[Finding]:

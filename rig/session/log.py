@@ -38,9 +38,13 @@ class SessionLog:
             text = f"{why}; the drive confirms it{ready}"
         self.event(KINDS.get(act, "state"), text)
 
+    def tripped(self, why: str) -> None:
+        """To the observer alone, before the drive has confirmed that its torque is off; the event follows."""
+        self._observer.tripped(why, self._t())
+
     def event(self, kind: str, text: str) -> None:
         """`kind` as in `events.jsonl`: state, trip, operator, note, finding. Never waits for the disk."""
-        t = None if self._log is None else self._run_time()
+        t = self._t()
         self._observer.event(kind, text, t)
         if self._log is None:
             self._early.append((kind, text))
@@ -53,3 +57,7 @@ class SessionLog:
         """
         log, self._log = self._log, None
         return log is None or log.close()
+
+    def _t(self) -> float | None:
+        """s since the run's start; None outside of one."""
+        return None if self._log is None else self._run_time()

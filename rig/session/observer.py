@@ -38,8 +38,9 @@ class Observer:
         """A run is about to start; what is returned is shown a sample every 100 ticks, beside the run's own watch."""
         return nobody
 
-    def tripped(self, why: str) -> None:
-        """Torque off is commanded, and not yet confirmed: whoever has to know at once is told."""
+    def tripped(self, why: str, t: float | None) -> None:
+        """Torque off is commanded, and not yet confirmed: whoever has to know at once is told. The event of the trip
+        follows, with what the drive said; `t` as for that."""
 
     def ended(self, folder: Path, ending: Ending) -> None:
         """Torque is off, the folder is about to be closed."""

@@ -87,7 +87,7 @@ class Recording:
         return Loop(
             self.instruments, self.supervisor, Guard(self.bench.limits, envelope, self._setting.ratio), recorder,
             self.interrupts, self.timing, self._both(watch, self.observer.begun(begun)),
-            setpoints_of(mode, self._setting), self.observer.tripped,
+            setpoints_of(mode, self._setting), self.log.tripped,
         )  # fmt: skip
 
     @staticmethod

@@ -55,7 +55,7 @@ class Teller(Observer):
         if kind in ("state", "trip", "operator"):
             self.tell()
 
-    def tripped(self, why: str) -> None:
+    def tripped(self, why: str, t: float | None) -> None:
         """A drive that is gone confirms nothing, and finding that out takes its time: the page is told before."""
         self.status.state = str(State.FAULT)
         self.status.fault = f"{why}; torque off is commanded, the drive has not yet confirmed it"
@@ -65,7 +65,7 @@ class Teller(Observer):
         """The page is told where the rows are."""
         procedure = run.procedure
         self.status.run = {
-            "uid": manifest.read(run.folder)["uid"], "procedure": procedure.name, "title": procedure.title(),
+            "uid": manifest.as_written(run.folder)["uid"], "procedure": procedure.name, "title": procedure.title(),
             "duration": run.duration, "locked": procedure.output_locked, "parameters": _parameters(procedure),
             "folder": str(run.folder), "ring": str(run.ring),
         }  # fmt: skip

@@ -39,9 +39,9 @@ class Onlookers(Observer):
 
         return watch
 
-    def tripped(self, why: str) -> None:
+    def tripped(self, why: str, t: float | None) -> None:
         for one in self._each:
-            one.tripped(why)
+            one.tripped(why, t)
 
     def ended(self, folder: Path, ending: Ending) -> None:
         for one in self._each:

@@ -9,7 +9,8 @@ once, a wrong command line too, there is `exit` alone. Every event has `event` a
 | simulated | text | connected: over the wire it is the twin that answers |
 | said | text | a sentence for the person |
 | prompt | text | somebody is asked for a change by hand, or whether to try again |
-| state, trip, operator, note, finding | text, t | as in `events.jsonl`; `t` s of run time, null outside of a run |
+| state, operator, note, finding | text, t | as in `events.jsonl`; `t` s of run time, null outside of a run |
+| trip | text, t | at once; again, whole, with what is found out later: that the drive did not confirm, what turns on |
 | run | folder, procedure, title, duration_s, ring | a run is about to start |
 | progress | t, state, lateness_p50_us, lateness_p99_us, missed, peak_to_peak_arcsec, rows, skipped | 2 a second |
 | ended | folder, status, reason, exit | torque is off, the run is being closed |
@@ -41,7 +42,7 @@ from rig.loop import Ending
 from rig.runfile.manifest import utc_now
 from rig.session.done import Watch
 from rig.session.observer import Begun, Observer
-from rig.supervisor import PRESS
+from rig.supervisor import PRESS, State
 from rig.timing.ticks import LoopTiming
 
 NOW = (
@@ -60,6 +61,7 @@ class Show(Observer):
         self._outlet = outlet
         self.left = False
         self.energised = False  # between the start of a run and its end
+        self._trip = ""  # what was told of one before the drive had confirmed anything
 
     def tell(self, kind: str, **keys: Any) -> None:
         """One event. Never waits and never raises."""
@@ -97,8 +99,15 @@ class Show(Observer):
         self.tell("simulated", text=wired_twin(bench))
 
     def event(self, kind: str, text: str, t: float | None) -> None:
-        """From the session."""
-        self.tell(kind, text=text, t=t)
+        """From the session. A trip that was told is told again only with what is to be added to it."""
+        told, self._trip = self._trip, "" if kind == "trip" else self._trip
+        if kind != "trip" or text != told:
+            self.tell(kind, text=text, t=t)
+
+    def tripped(self, why: str, t: float | None) -> None:
+        """From the session: a drive that is gone confirms nothing, and that takes a second to be found out."""
+        self._trip = f"{State.FAULT}: {why}"
+        self.tell("trip", text=self._trip, t=t)
 
     def warned(self, text: str) -> None:
         """From the session."""
@@ -106,7 +115,7 @@ class Show(Observer):
 
     def begun(self, run: Begun) -> Watch:
         """From the session: a run is about to start."""
-        self.energised = True
+        self.energised, self._trip = True, ""
         self.tell(
             "run",
             folder=str(run.folder),

@@ -10,7 +10,7 @@ from typing import Any, TextIO, final
 from rig.commands.show.screens import Screen
 from rig.commands.show.words import late, peak
 
-KEYS = ("any key: halt (torque off)", "but s: stop", "h: hold", "Ctrl-C: stop (twice: halt)")  # fit 80 columns
+KEYS = ("any key: halt (torque off)", "s, Ctrl-Z: stop", "h: hold", "Ctrl-C: stop, twice: halt")  # fit 80 columns
 APART = "  "
 BAR = 12  # characters
 HOLDING = "holding"  # of the states an event can carry

@@ -9,6 +9,7 @@ from typing import Any
 
 from rig.core.numbers import number, stated
 from rig.runfile.manifest import ratio_of, read
+from rig.runfile.origin import SIM
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ def about(folder: Path) -> About:
         procedure=procedure,
         gear=str(gear.get("serial") or "gear"),
         ratio=ratio_of(folder, said),
-        simulated=said.get("backend") == "sim",
+        simulated=said.get("backend") == SIM,
         locked=bool(conditions.get("output_locked")),
         stiffness=max(stated(_part(said, "declared").get("K"), 0.0), 0.0),
         rate=max(number(loop.get("rate"), 0.0), 0.0),

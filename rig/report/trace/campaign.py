@@ -17,6 +17,7 @@ from rig.report.provenance import software
 from rig.report.rows import cut, measured, show, table, utc
 from rig.report.words import kind
 from rig.runfile.manifest import contents, parse
+from rig.runfile.origin import with_origin
 
 
 class RunRow(NamedTuple):
@@ -92,7 +93,7 @@ def provenance(folder: Path, traced_with: Mapping[str, Any], traced_utc: str) ->
             manifest = parse(contents(place / "manifest.json"))
         except (OSError, ValueError):
             continue
-        found[place.name] = table(cut(manifest))
+        found[place.name] = with_origin(place, table(cut(manifest)))
     return Provenance(found, traced_with, traced_utc)
 
 

@@ -50,7 +50,7 @@ def test_hold_then_stop_by_key(terminal: Terminal) -> None:
 
 
 def test_halt_by_escape(terminal: Terminal) -> None:
-    assert "any key: halt (torque off)  but s: stop  h: hold  Ctrl-C: stop (twice: halt)" in terminal.seen
+    assert "any key: halt (torque off)  s, Ctrl-Z: stop  h: hold  Ctrl-C: stop, twice: halt" in terminal.seen
     assert "SIMULATED RUNNING kinematic-error" in terminal.seen
     terminal.press("\x1b")
     assert terminal.end() == 130

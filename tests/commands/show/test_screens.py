@@ -51,7 +51,7 @@ def test_a_run_stands_in_three_lines_with_state_progress_peak_to_peak_lateness_a
     assert second == "late p50 52 µs, p99 180 µs, 3 cycles missed"
     assert third == "  ".join(KEYS)
     assert len(third) < 80
-    for way in ("any key: halt (torque off)", "Ctrl-C: stop (twice: halt)", "s: stop", "h: hold"):
+    for way in ("any key: halt (torque off)", "s, Ctrl-Z: stop", "h: hold", "Ctrl-C: stop, twice: halt"):
         assert way in third
 
 

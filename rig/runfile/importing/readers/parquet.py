@@ -10,6 +10,7 @@ import numpy as np
 
 from rig.runfile.importing.mapping import Dialect
 from rig.runfile.importing.table import Array, Table, locate
+from rig.runfile.origin import says_simulated
 
 
 def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
@@ -21,7 +22,7 @@ def read(path: Path, wanted: Sequence[str], dialect: Dialect) -> Table:
         found = locate(schema.names, wanted, path.name)
         table = file.read(columns=list(found.values()))
         columns = {name: to_numpy(table[full]) for name, full in found.items()}
-    simulated = (schema.metadata or {}).get(b"simulated") == b"true"  # a run folder's own samples say it
+    simulated = says_simulated(schema.metadata)  # a run folder's own samples say it
     units = {name: (schema.field(full).metadata or {}).get(b"unit", b"") for name, full in found.items()}
     stated = {name: unit.decode("utf-8", "replace") for name, unit in units.items() if unit}
     return Table(columns, stated, simulated=simulated)
