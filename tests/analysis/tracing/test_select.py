@@ -125,3 +125,22 @@ def test_a_floor_beside_effects_that_the_sensors_make_is_one(
 
     p: Any = SimpleNamespace(measured=measured(beside), first=measured(without))
     assert select._is_the_sensors(p, measured(without)) is is_one
+
+
+@pytest.mark.parametrize(
+    ("beside", "sensors", "took"),
+    [
+        (0.022, 0.036, True),  # an inertia that is damped away took on what J_l·θ̈_l makes (exam 104, case 07)
+        (0.037, 0.036, False),  # what the sensors make
+        (0.022, None, False),
+    ],
+)
+def test_a_floor_beside_effects_below_what_the_sensors_make_is_none(
+    beside: float, sensors: float | None, took: bool
+) -> None:
+    def measured(rms: float) -> Any:
+        noise = SimpleNamespace(sigma=dict.fromkeys("AM", 1.0) | {"L": rms})
+        return SimpleNamespace(noise=noise, white={} if sensors is None else {(0, "L"): sensors, (1, "A"): 1.0})
+
+    p: Any = SimpleNamespace(measured=measured(beside), first=measured(0.085))
+    assert select._took_noise(p, measured(0.085)) is took

@@ -126,16 +126,26 @@ def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
     """With the floor measured beside the effects that stayed: eliminated ones may have taken noise with them.
 
     Where nothing was repeated one turn differs from the next by what the model lacks as well: they stay, unless
-    nothing is left over that larger floor either, and the lower one is less than the sensors make.
+    nothing is left over that larger floor either, and the lower one is less than the sensors make; or is much less.
     """
     measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
     if any(term.effect.remembers for term in s.design.terms):
         measured = replace(measured, noise=measured.noise.free("A"))
     again = replace(p, measured=measured, held_out=_held_out(p, p.eq, measured))
-    if repeats(p.eq.runs, runs):
+    if repeats(p.eq.runs, runs) or _took_noise(p, measured):
         return again
     quiet = not is_loud(again.held_out, s, unseen(s, again.held_out))
     return again if quiet and not _is_the_sensors(p, measured) else p
+
+
+def _took_noise(p: Prepared, measured: Measured) -> bool:
+    """Whether the floor beside effects is much lower in a channel than what was `measured` without, and than the noise
+    of the sensors: an inertia of its own that is damped away leaves the gear less, and less of the noise."""
+    return any(
+        measured.noise.sigma[c] > MUCH * p.measured.noise.sigma[c]
+        and MUCH * p.measured.noise.sigma[c] < _of_sensors(p.first, c)
+        for c in WHOLE
+    )
 
 
 def _is_the_sensors(p: Prepared, measured: Measured) -> bool:
