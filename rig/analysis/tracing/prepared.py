@@ -16,8 +16,8 @@ from rig.analysis.tracing.fit.negative import refuse_negative
 from rig.analysis.tracing.fit.scale import off_scale
 from rig.analysis.tracing.fit.search import ROUNDS, SETTLED
 from rig.analysis.tracing.floor.held_out import HeldOut, held_out_blocks
-from rig.analysis.tracing.floor.noise import Measured, guess, measure
-from rig.analysis.tracing.floor.of_a_run import floor_of, of_sensors
+from rig.analysis.tracing.floor.noise import Measured, guess, measure, of_sensors
+from rig.analysis.tracing.floor.of_a_run import floor_of
 from rig.analysis.tracing.floor.own import Own, find
 from rig.analysis.tracing.runs.answered import KEPT, slow_enough, too_fast
 from rig.analysis.tracing.runs.campaign import Campaign
@@ -54,7 +54,7 @@ class Prepared:
     def silence(self) -> dict[Key, float]:
         """Floors of the fitted blocks below which nothing more is looked for. What repeats of the load torque differ by
         far beyond the noise of the readings is of a rig that answers otherwise each time: it may be what is missing."""
-        sensors = {key: of_sensors(self.measured, self.eq, *key) for key in self.floors if key[1] == "L"}
+        sensors = {key: of_sensors(self.eq, self.measured.white, *key) for key in self.floors if key[1] == "L"}
         most = {key: self.measured.beyond * rms for key, rms in sensors.items() if rms}
         return {key: min(floor, most.get(key, floor)) for key, floor in self.floors.items()}
 

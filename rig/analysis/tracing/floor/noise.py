@@ -176,7 +176,7 @@ def _white(d: Design, x: Array) -> dict[Key, float]:
     return {key: float(np.sqrt(np.mean(d.noise_left(key, x) ** 2))) for key in d.noise}
 
 
-def _of_sensors(eq: Equations, white: Mapping[Key, float], run: int, channel: str) -> float:
+def of_sensors(eq: Equations, white: Mapping[Key, float], run: int, channel: str) -> float:
     """RMS of the noise of a run, of those of its procedure where its own is not known, 0 where nobody's is."""
     like = [v for (j, c), v in white.items() if c == channel and eq.runs[j].procedure == eq.runs[run].procedure]
     return white.get((run, channel), float(np.sqrt(np.mean(np.square(like)))) if like else 0.0)
@@ -188,7 +188,7 @@ def _quietest(
     """How many times the noise of its sensors, taken to be white, is left all the time in the run that has least, or is
     what that differs by; 1 at least. All of a pink noise is more than what is rough in it, in every run."""
     left = [(i, steady(e[i, c])) for i, c in e if c == channel] + [(s.pair[0], s.rms) for s in found]
-    over = [rms / sensors for i, rms in left if (sensors := _of_sensors(eq, white, i, channel))]
+    over = [rms / sensors for i, rms in left if (sensors := of_sensors(eq, white, i, channel))]
     return max(1.0, min(over, default=1.0))
 
 
@@ -199,13 +199,13 @@ def _as_sensors_tell(
     do the next where a turn is whole counts. And what is said where it is much more. Repeats begin elsewhere. What is
     `beyond` so many times that noise is none: what is missing may begin anew each turn."""
     over = [
-        s.rms / least for s in found if s.pair[0] == s.pair[1] and (least := _of_sensors(eq, white, s.pair[0], channel))
+        s.rms / least for s in found if s.pair[0] == s.pair[1] and (least := of_sensors(eq, white, s.pair[0], channel))
     ]
     usual = float(np.median([x for x in over if x <= beyond] or [beyond]))
 
     def believed(s: Scatter) -> Scatter:
         """What sensors make at least, and as much as in other runs where it is many times that."""
-        if s.pair[0] != s.pair[1] or not (least := _of_sensors(eq, white, s.pair[0], channel)):
+        if s.pair[0] != s.pair[1] or not (least := of_sensors(eq, white, s.pair[0], channel)):
             return s
         if s.rms > beyond * least:
             return replace(s, rms=usual * least, swollen=s.rms / (usual * least))

@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 from scipy.special import fdtri
 
 from rig.analysis.tracing.fit.equations import Equations, Key
-from rig.analysis.tracing.floor.noise import Measured
+from rig.analysis.tracing.floor.noise import Measured, of_sensors
 from rig.analysis.tracing.floor.offsets import ENOUGH
 from rig.analysis.tracing.runs.alike import alike, as_fast
 from rig.analysis.tracing.thresholds import CHANCE, GAIN, LENIENT, MISSING
@@ -49,20 +49,11 @@ def _with_its_sensors(measured: Measured, eq: Equations, key: Key, pooled: float
     """The floor `pooled` of the runs `among` with what sensor noise leaves of this one in the place of what it leaves
     of theirs, where both are known: a run read four times as often has half of it."""
     rows = [eq.rows[i, key[1]].y.size for i in among if (i, key[1]) in eq.rows]
-    theirs = [of_sensors(measured, eq, i, key[1]) for i in among if (i, key[1]) in eq.rows]
-    mine = of_sensors(measured, eq, *key)
+    theirs = [of_sensors(eq, measured.white, i, key[1]) for i in among if (i, key[1]) in eq.rows]
+    mine = of_sensors(eq, measured.white, *key)
     if not rows or not mine or not all(theirs):
         return pooled
     return float(np.sqrt(max(pooled**2 + mine**2 - float(np.average(np.square(theirs), weights=rows)), mine**2)))
-
-
-def of_sensors(measured: Measured, eq: Equations, run: int, channel: str) -> float:
-    """RMS of what sensor noise leaves in a block, of its procedure where its own is not known; 0 of neither."""
-    if (run, channel) in measured.white:
-        return measured.white[run, channel]
-    procedure = eq.runs[run].procedure
-    like = [v for (i, c), v in measured.white.items() if c == channel and eq.runs[i].procedure == procedure]
-    return float(np.sqrt(np.mean(np.square(like)))) if like else 0.0
 
 
 def leniency(measured: Measured, eq: Equations, key: Key) -> float:

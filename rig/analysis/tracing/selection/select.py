@@ -125,8 +125,8 @@ def _left_where_it_slides(p: Prepared, kept: Kept, freed: Collection[str]) -> fl
 def _floored(p: Prepared, s: Solution, runs: Sequence[int]) -> Prepared:
     """With the floor measured beside the effects that stayed: eliminated ones may have taken noise with them.
 
-    Where nothing was repeated one turn differs from the next by what the model lacks as well: they stay, unless
-    nothing is left over that larger floor either, and the lower one is less than the sensors make; or is much less.
+    Where nothing was repeated one turn differs from the next by what the model lacks as well: the floor beside effects
+    stays, unless nothing is left over the larger one either and it is not what the sensors make; or it is far less.
     """
     measured = quieter(p.first, measure(s, runs)) if s.design.terms else p.first
     if any(term.effect.remembers for term in s.design.terms):
