@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import uuid
 from collections.abc import Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, cast
 
 import pytest
@@ -52,7 +53,8 @@ def with_desk(story: Callable[[ActDesk, Station], Coroutine[Any, Any, None]], sa
         station = Station(says)
         await story(desk(station), station)
 
-    asyncio.run(told())
+    with ThreadPoolExecutor(1) as pool:  # a browser under test leaves a loop running in this thread
+        pool.submit(asyncio.run, told()).result()
 
 
 @pytest.mark.parametrize(("refused", "says"), [
