@@ -114,9 +114,9 @@ AMISS: Final = 2.8  # RMS over floor where an effect acts: with more left there 
 CLOSE: Final = 0.95  # of what an effect explains alone another one must reach to be called a rival
 STILL: Final = 1.02  # RMS over floor of a channel below which only what is certain is said
 STILL_RUN: Final = 1.25  # the same of a single run
-# times the noise of its sensors, RMS, which the quietest run has: what turns or repeats of the load torque differ by is
-# no noise any more. Of clean rigs it is up to 1.3, or 2.2 where friction and gains are restless too, of missing effects
-# that begin anew 3 to 10
+# times the noise of its sensors, RMS, as the quietest run has it: what turns or repeats of the load torque differ by is
+# no noise any more. Over the white noise of its readings it is up to 1.3 of clean rigs, or 2.2 where friction and gains
+# are restless too, and 3 and more of missing effects that begin anew
 BEYOND: Final = 3.0
 LINE: Final = 15.0  # power over its surroundings: chance gets there in one of three million lines
 LINE_RUNS: Final = 0.5  # of the runs that must show the line
