@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from rig.analysis.findings.result import Array
@@ -9,24 +11,54 @@ from rig.analysis.motion.source import Motion, Source
 from rig.core.channels import Flag
 from rig.core.rows import stretches
 
-OFTEN = 0.5  # of the rows with a new reading: from there on a reading is held for a row now and then, no more
+OFTEN: Final = 0.5  # of the rows with a new reading: from there on a reading is held for a row now and then, no more
+COUNTS: Final = 4.0  # of the sensor, from one reading to the next: a coarse one at rest goes on by one or two
+ROUNDED: Final = 1e-9  # of the largest reading: what the numbers' own rounding makes of two equal ones
 
 
 def said_seldom(run: Source, motion: Motion) -> str:
     """A sentence on a shaft torque that most rows hold from a row before; "" where it is read often enough, or nothing
     tells."""
-    flags, t = run.column("flags"), motion.t
-    if flags is None or t is None or t.size < 2 or run.column("tau_l") is None:
+    flags, torque = run.column("flags"), run.column("tau_l")
+    if torque is None:
         return ""
-    fresh = sum(_fresh(flags[some]) for some in stretches(flags.size))
+    if flags is None:
+        return seldom_by_value(motion.t, motion.pick(torque))
+    return _said(motion.t, sum(_fresh(flags[some]) for some in stretches(flags.size)), flags.size)
+
+
+def seldom_by_value(t: Array | None, torque: Array | None) -> str:
+    """The same, of readings (n,) in N·m at `t` s that nothing says the age of: one that says again what the one before
+    it said, and then something that is many counts away, was held."""
+    if torque is None or torque.size < 2:
+        return ""
+    steps = np.abs(np.diff(torque))
+    steps = steps[steps > 0.0]
+    if steps.size == 0 or float(np.median(steps)) < COUNTS * _count(torque):
+        return ""
+    return _said(t, steps.size + 1, torque.size)
+
+
+def _said(t: Array | None, fresh: int, rows: int) -> str:
+    if t is None or t.size < 2 or fresh > OFTEN * rows or not fresh:
+        return ""
     duration = float(t[-1] - t[0])
-    if fresh > OFTEN * flags.size or not fresh or duration <= 0.0:
+    if duration <= 0.0:
         return ""
     rate = fresh / duration
     return (
-        f"The shaft torque is new in {fresh} of {flags.size} rows, {rate:.3g} times a second, and held between them: "
+        f"The shaft torque is new in {fresh} of {rows} rows, {rate:.3g} times a second, and held between them: "
         f"what is in it above {rate / 2:.3g} Hz is not seen."
     )
+
+
+def _count(torque: Array) -> float:
+    """Smallest distance between two values that were read, N·m: one count of a coarse sensor, next to nothing of a fine
+    one; infinite where only one was."""
+    values = np.unique(torque[np.isfinite(torque)])
+    apart = np.diff(values)
+    apart = apart[apart > ROUNDED * np.max(np.abs(values), initial=0.0)]
+    return float(np.min(apart)) if apart.size else np.inf
 
 
 def _fresh(flags: Array) -> int:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rig.analysis.motion.source import Motion, Source, motion_of
+from rig.analysis.sensors.seldom import said_seldom, seldom_by_value
 from rig.analysis.tracing.runs.clocked import is_clocked
 from rig.analysis.tracing.runs.grid import grid, joined, refuse_other_time, refuse_sparse
 from rig.analysis.tracing.runs.holes import without_holes
@@ -49,7 +50,8 @@ def as_read(run: Source, in_file: int, hz: float | None) -> AsRead:
     t, jitter = evened(t, theta_l if theta_m is None else theta_m, dt)
     dt = float(np.median(np.diff(t))) if jitter else dt
     unbroken = joined(t, np.full(rows, np.nan) if theta_m is None else theta_m, dt, breaks, timed)
-    notes = (*(motion.notes if motion else ()), *filter(None, (holes, jitter)))
+    held = said_seldom(run, motion) if motion else seldom_by_value(t, columns["tau_l"])
+    notes = (*(motion.notes if motion else ()), *filter(None, (holes, jitter, held)))
     return AsRead(t, dt, columns, has, tuple(unbroken), clocked, notes)
 
 
