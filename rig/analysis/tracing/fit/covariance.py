@@ -16,6 +16,7 @@ PIECES = 4  # of a run and channel: each many correlation times long
 CORRECTED = 2.0  # times a variance, at most, for coefficients that took on some of it: in half a dozen runs there are
 # as many of them as clusters, each of thousands of rows, and next to nothing would be known
 FEW = 12  # runs: with fewer their pieces are left out instead, each many correlation times long
+SEVERAL = 4  # runs, of which whole ones are left out: of three the one that alone shows something says all of it
 FREEDOM = 2.0  # degrees, and no fewer: of one run alone the runs say nothing
 LEVERAGE = 0.9  # of what is known of something: a run with more of it cannot be told by the others
 
@@ -26,15 +27,33 @@ def covariance(s: Solution) -> Array:
 
     Runs differ by what no row shows: gains that drift, small effects that are in no model. Without run r, whose normal
     matrix is G_r and whose score is u_r, the fit is off by (G − G_r)⁻¹·u_r. Two runs that say most of something have
-    few degrees of freedom, however many others there are.
+    few degrees of freedom, however many others there are. Of few runs pieces of them are left out.
     """
+    return _jackknife(s, -(-FEW // _runs(s)))
+
+
+def between_runs(s: Solution) -> Array:
+    """By how much the variance (p,) of each coefficient is larger when whole runs are left out where `covariance` takes
+    their pieces: friction that is another one in every run is the same in all pieces of one. Of a run or two nothing is
+    known of that: 0, as where there are runs enough."""
+    if not SEVERAL <= _runs(s) < FEW:
+        return np.zeros(s.x.size)
+    return np.asarray(np.maximum(np.diag(_jackknife(s, 1)) - np.diag(covariance(s)), 0.0))
+
+
+def _runs(s: Solution) -> int:
+    return len({run for run, _ in s.keys})
+
+
+def _jackknife(s: Solution, pieces: int) -> Array:
+    """(p, p), each run being so many clusters."""
     scaled, scale = evened(s.gram)
     # sensor noise taken off can leave some below zero: of those, no more is known than by how much it was too much
     sizes, axes = np.linalg.eigh(scaled)
     root = (axes / np.sqrt(np.maximum(np.abs(sizes), 1e-11))).T * scale
     out, count = np.zeros_like(s.gram), 0
     expected, squares = np.zeros(s.x.size), np.zeros(s.x.size)
-    for gram, score in _clusters(s):
+    for gram, score in _clusters(s, pieces):
         inner = root @ gram @ root.T
         share, along = np.linalg.eigh(inner)
         off = root.T @ (along @ ((along.T @ (root @ score)) / (1 - np.minimum(share, LEVERAGE))))
@@ -69,11 +88,9 @@ def _part(n: int, i: int, of: int) -> slice:
     return slice(i * each + min(i, more), (i + 1) * each + min(i + 1, more))
 
 
-def _clusters(s: Solution) -> Iterator[tuple[Array, Array]]:
-    """Normal matrix (p, p) and score (p,) of each run, or of its pieces."""
-    runs = sorted({run for run, _ in s.keys})
-    pieces = -(-FEW // len(runs))
-    for run in runs:
+def _clusters(s: Solution, pieces: int) -> Iterator[tuple[Array, Array]]:
+    """Normal matrix (p, p) and score (p,) of so many pieces of each run."""
+    for run in sorted({run for run, _ in s.keys}):
         keys = [key for key in s.keys if key[0] == run]
         blocks = {key: (*s.design.whole(key), s.residual(key)) for key in keys}
         for i in range(pieces):

@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.analysis.tracing.fit.beside_zero import beside_its_zero
 from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, third_rate
-from rig.analysis.tracing.fit.covariance import covariance
+from rig.analysis.tracing.fit.covariance import between_runs, covariance
 from rig.analysis.tracing.fit.curves import Compliance, Curves
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.late_reading import beside_a_late_reading
@@ -33,6 +33,8 @@ PLAIN = {
     "lag_m": "s",
 }
 
+CONSTANTS = (*PLAIN, "compliance", "damping", "inertia")  # all of the baseline but θ̃_p, the same whatever the run
+
 ROUNDS = 4  # each leaves a fiftieth of what the one before left
 NO_LAG = 1e-9  # s
 STEP = 1e-4  # relative, of a coefficient or shape: figures are smooth in them
@@ -49,6 +51,8 @@ def inertias_by_what_returns(s: Solution, runs: Sequence[int]) -> tuple[Paramete
     moved, (fitted, _) = by_what_returns(s), _loose(s)
     spread = _widened(s, fitted, runs, covariance) if fitted else covariance(s).copy()
     spread[: s.x.size, : s.x.size] += moved.more + unsure
+    constants = [INDEX[name] for name in CONSTANTS]
+    spread[constants, constants] += between_runs(s)[constants]
     return baseline(replace(s, x=moved.x), spread, fitted)
 
 

@@ -133,7 +133,8 @@ def _ranked(p: Prepared, s: Solution, scores: Sequence[HeldOutScore]) -> tuple[d
     all runs, and where it acts. A friction under one weight is little over all of them, and may be all there is."""
     own = own_scores(p, s)
     shares = {score.name: score.share for score in scores} | {name: share for name, (share, _) in own.items()}
-    does = {score.name: math.sqrt(score.overall * score.size) for score in scores} | {
+    most = {score.name: max(score.size, score.seen) for score in scores}  # in a run, whether it was fitted or not
+    does = {score.name: math.sqrt(score.overall * most[score.name]) for score in scores} | {
         name: much for name, (_, much) in own.items()
     }
     return shares, tuple(sorted(shares, key=lambda name: -does[name]))
