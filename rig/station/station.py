@@ -172,6 +172,8 @@ class Station:
         for message in self.channel.receive():
             self.meanwhile(message)
         self.channel.flush()
+        if self.channel.closed:
+            self.panel.left_alone()
         if self.session is not None:
             self._look_at_chain(self.session, energised=True)
 
