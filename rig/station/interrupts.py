@@ -49,7 +49,7 @@ class Panel(Interrupts):
             self._patience = patience
 
     def left_alone(self) -> None:
-        """The page's server is gone, for good: a motor that is held, which ends by what somebody presses, is stopped."""
+        """The page's server is gone, for good: a motor that is held, which only a switch would end, is stopped."""
         self.alone = self.alone or self.held
 
     def _look(self) -> None:
