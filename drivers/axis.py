@@ -12,6 +12,7 @@ NODES = range(64)
 LISTEN = 0.5  # s in which an axis must have told that it lives; heartbeats come every 100 ms unless set otherwise
 ANSWER = 0.1  # s for an answer to a remote frame
 PATIENCE = 3.5  # heartbeats that may stay away
+FASTEST = 0.02  # s between two: closer ones were held up on their way, and handed over together
 
 
 class Axis:
@@ -53,7 +54,7 @@ class Axis:
                 f"{self.who} sent {len(beats)} heartbeats in {LISTEN:g} s, expected one every 100 ms or faster: "
                 "are node number and bitrate right, is CAN enabled in the axis?"
             )
-        self.interval = beats[1] - beats[0]
+        self.interval = max(beats[1] - beats[0], FASTEST)
 
     def _identify(self) -> Identity:
         data = self.ask(cs.VERSION)

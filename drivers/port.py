@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import termios
+import time
 
 import serial
 
@@ -12,6 +13,8 @@ from drivers.unopened import first_line
 from rig.core.errors import NotReady
 
 GONE = (serial.SerialException, OSError, termios.error)  # pyserial 3.5 raises all three for the same pulled plug
+UNREAD = 0.5  # s after which what a port has kept is old, and is handed over 4 kB a look, the oldest first
+GAP = b"\0"  # part of no line: what came before it and what comes after do not join
 
 
 class Port:
@@ -28,6 +31,7 @@ class Port:
         self._made.exclusive = True
         self._made.rts, self._made.dtr = rts, dtr
         self._claim: Claim | None = None
+        self._read = 0.0  # s, monotonic, when it was read last
 
     def open(self) -> None:
         """Raises NotReady with the reason."""
@@ -40,13 +44,20 @@ class Port:
         except GONE as why:
             self.close()
             raise NotReady(f"{self.who} could not be opened: {first_line(why)}") from None
-        self.dead = ""
+        self.dead, self._read = "", time.monotonic()
 
     def read(self) -> bytes:
-        """What has arrived, without waiting; b"" also when the port is gone. Never raises."""
+        """What has arrived, without waiting; b"" also when the port is gone. Never raises.
+
+        Of a port that nobody read for a while that is thrown away: nobody could tell how old it is.
+        """
         if self.dead or not self._made.is_open:
             return b""
+        before, self._read = self._read, time.monotonic()
         try:
+            if self._read - before > UNREAD:
+                self._made.reset_input_buffer()
+                return GAP
             waiting = self._made.in_waiting
             return bytes(self._made.read(waiting)) if waiting else b""
         except GONE as why:

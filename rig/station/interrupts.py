@@ -26,6 +26,7 @@ class Panel(Interrupts):
         self._hold = False
         self._patience = float("inf")  # s without a page, then stop
         self.lost = False  # the page was, and a stop followed from it
+        self.alone = False  # the page's server is gone, and a stop followed from it
         super().__init__()
 
     def arm(self, taken: Counts, page_lost_s: float = float("inf")) -> None:
@@ -47,6 +48,10 @@ class Panel(Interrupts):
         finally:
             self._patience = patience
 
+    def left_alone(self) -> None:
+        """The page's server is gone, for good: a motor that is held, which only a switch would end, is stopped."""
+        self.alone = self.alone or self.held
+
     def _look(self) -> None:
         """At the switches, when any was pressed since the last look: nearly every tick that is one comparison."""
         if self._switches.total == self._total:
@@ -63,7 +68,7 @@ class Panel(Interrupts):
         self._look()
         if not (self._asked or self._heard or self._keyed or self.lost):
             self.lost = self._switches.page_age > self._patience
-        return max(self._asked, len(self._heard), self._keyed, int(self.lost))
+        return max(self._asked, len(self._heard), self._keyed, int(self.lost or self.alone))
 
     @count.setter
     def count(self, value: int) -> None:
@@ -87,6 +92,8 @@ class Panel(Interrupts):
     @property
     def who(self) -> str:
         """Who asked, for sentences that say that something was ended."""
+        if self.alone and self.count == 1:
+            return "because the page's server is gone and nobody else could let go of a motor that is held"
         if self.lost and self.count == 1:
             return f"because no page had been seen for {self._patience:g} s, as [console] page_lost says"
         return super().who

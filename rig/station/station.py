@@ -172,6 +172,8 @@ class Station:
         for message in self.channel.receive():
             self.meanwhile(message)
         self.channel.flush()
+        if self.channel.closed:
+            self.panel.left_alone()
         if self.session is not None:
             self._look_at_chain(self.session, energised=True)
 
@@ -187,7 +189,7 @@ class Station:
 
     def _carry_out(self, job: Job, message: Mapping[str, Any]) -> None:
         pressed = message.get("pressed") or self.switches.pressed
-        self._halts = self.switches.pressed.halt
+        self._halts, last = self.switches.pressed.halt, self.status.last_run
         self.panel.arm(Counts(*pressed), self._patience())
         self.busy(WORDS.get(str(message["act"]), str(message["act"])))
         self._reply(message, "")  # after the picture that says so: whoever has it sees a station that is busy
@@ -199,7 +201,8 @@ class Station:
             self._broke_off(error)
         finally:
             self.panel.disarm()
-            self._halts = self.switches.pressed.halt  # what was halted is not halted again
+            if self.status.last_run is not last:  # a run saw it: what was halted is not halted again
+                self._halts = self.switches.pressed.halt
             self.status.job, self.status.campaign, self.status.run = "", None, None
             self.told()
 

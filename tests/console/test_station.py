@@ -99,3 +99,17 @@ def test_a_defect_in_an_act_is_a_sentence_and_the_station_keeps_the_bench_withou
     assert taken_off == [True]
     assert station.need().supervisor.state is (State.CONNECTED if confirms else State.FAULT)
     station.attend()  # it goes on
+
+
+def test_a_halt_pressed_while_something_else_than_a_run_is_carried_out_is_not_lost(
+    line: tuple[Station, Channel], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """During a check, say: nothing looked at it, and afterwards it counted as seen."""
+    station, page = line
+    station.take({"act": "connect", "id": "1", "until": None, "bench": "twin", "clock": "virtual"})
+    station.jobs = {**JOBS, "check": lambda station, message: station.switches.halt()}
+    station.take({"act": "check", "id": "2", "until": None})
+    page.receive(1.0)
+    station.attend()
+    said = [m["event"]["text"] for m in page.receive(1.0) if m["kind"] == "event"]
+    assert said == ["halted while nothing ran: torque off, confirmed by the drive"]

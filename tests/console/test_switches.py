@@ -112,6 +112,17 @@ def test_a_lost_page_is_a_stop_that_says_so_and_stays_one(pressed: Switches, pan
     assert panel.count == 1, "what was begun to be stopped is not gone on with"
 
 
+def test_a_motor_that_is_held_is_stopped_once_nobody_can_let_go_of_it(pressed: Switches, panel: Panel) -> None:
+    """Where the bench says `continue` it was held with torque on for ever when the page's server had died."""
+    panel.arm(pressed.pressed)
+    panel.left_alone()
+    assert panel.count == 0, "a run goes on to its own end, as the bench says"
+    pressed.hold()
+    panel.left_alone()
+    assert panel.count == 1
+    assert "server is gone" in panel.who
+
+
 def test_a_page_that_gives_signs_of_life_is_not_lost(pressed: Switches, panel: Panel) -> None:
     panel.arm(pressed.pressed, page_lost_s=30.0)
     pressed.page_alive()

@@ -222,3 +222,21 @@ def test_no_sync_and_no_heartbeat_of_ours_is_sent_on_its_bus():
 def test_a_canopen_number_of_0_is_refused():
     with pytest.raises(NotReady, match="CANopen has nodes 1 to 127"):
         wired("devices.drive.node=0").instruments.connect()
+
+
+def test_heartbeats_that_were_held_up_and_came_together_are_not_taken_for_its_rhythm(monkeypatch: pytest.MonkeyPatch):
+    """Without time stamps: the axis was then found silent 1 ms after each heartbeat."""
+    driven = odriven()
+    real = driven.instruments.drive.axis.next_heartbeat  # type: ignore[attr-defined]
+    axis = driven.instruments.drive.axis  # type: ignore[attr-defined]
+
+    def together(seconds: float) -> bool:
+        if not axis.bus.frames.get(axis.id(0x01)):
+            return real(seconds)
+        axis.heard += 0.0002
+        return True
+
+    monkeypatch.setattr(axis, "next_heartbeat", together)
+    axis.open()
+    assert axis.interval == pytest.approx(0.02)
+    driven.instruments.drive.bus.close()  # type: ignore[attr-defined]
