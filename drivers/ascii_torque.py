@@ -6,6 +6,7 @@ checksum, two hexadecimal digits behind `*`, is the exclusive or of all bytes be
 
 from __future__ import annotations
 
+import math
 import re
 import time
 from functools import reduce
@@ -80,7 +81,8 @@ class AsciiTorque(TorqueSensor):
             tau = decode_line(line)
             if tau is not None:
                 self._useless = 0
-                over = self.place.at_its_end(tau)
+                tau = self.place.torque(tau)
+                over = not math.isfinite(tau) or self.place.at_its_end(tau)
                 t = self._clock.now() - self._delay
                 self._last = TorqueReading(t, self._direction * tau, int(Flag.SATURATED_TAU) if over else 0)
                 break

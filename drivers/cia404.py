@@ -76,7 +76,7 @@ class Cia404(OnSync, TorqueSensor):
         self.trouble = self._inputs.wrong or self.node.trouble(self.bus.clock.now())
         if is_never(latched) or latched == self._last.t:
             return self._last
-        tau = self._direction * self._inputs.values[0] * self._scale
+        tau = self._direction * self.place.torque(self._inputs.values[0] * self._scale)
         over = not math.isfinite(tau) or self.place.at_its_end(tau)
         self._last = TorqueReading(latched, tau, int(Flag.SATURATED_TAU) if over else 0)
         return self._last

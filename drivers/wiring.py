@@ -10,11 +10,13 @@ from drivers.bus import CANOPEN, Bus
 from drivers.claim import connect_alone
 from rig.core.clock import Clock
 from rig.core.errors import UsageError
+from rig.core.sample import NAN
 
 UNASKED = {"slcan": {"timeout": 0.0}}  # s; python-can's 1 ms is waited at every look at an empty line, four a tick
 
 
 LAST = 0.999  # of the range of a torque sensor
+CODE = 2.0  # times it, from which on a number is no torque: sensors tell a broken cable by one, amplifiers end before
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,10 @@ class Place:
         """Whether a torque [N·m] is the last that a sensor of this range tells, to one of its counts: there may be
         more."""
         return abs(tau) >= LAST * self.range
+
+    def torque(self, told: float) -> float:
+        """A torque [N·m] as the sensor told it; no number where it is what stands for an error."""
+        return told if not self.range or abs(told) < CODE * self.range else NAN
 
     def need(self, key: str) -> Any:
         """An option without which the device cannot be reached. Raises UsageError."""

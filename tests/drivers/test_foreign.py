@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Iterator
 from typing import Any
@@ -17,6 +18,7 @@ from drivers.cia406 import POSITION, Cia406
 from drivers.node import Node
 from drivers.pdo import Inputs
 from drivers.wiring import Place, Wiring
+from rig.core.channels import Flag
 from rig.core.clock import WallClock
 from rig.core.errors import NotReady
 from rig.core.sample import Mode, Torque
@@ -135,6 +137,18 @@ def test_a_torque_sensor_that_knows_no_sync_is_stamped_by_arrival_and_that_is_sa
     assert second.tau == pytest.approx(-1.25)
     assert second.t > first.t
     assert wire.now() - second.t < 0.0011
+
+
+def test_a_number_that_stands_for_a_broken_cable_is_no_torque(wire: VirtualWire):
+    """Told with a run that tripped on it: the shaft carried +2147483.6 N·m."""
+    foreign = peer(wire, TORQUE, tpdos=[Tpdo(0, 0x180 + NODE, 1, [(0x9130, 1, 32)])])
+    sensor = Cia404(wiring(wire), place("torque_sensor"))
+    sensor.connect()
+    assert sensor.read().tau == pytest.approx(-1.25)
+    foreign.objects[0x9130, 1] = struct.pack("<i", 2**31 - 1)
+    reading = tick(wire, sensor)
+    assert math.isnan(reading.tau)
+    assert reading.flags & Flag.SATURATED_TAU
 
 
 def test_a_pdo_sent_after_every_fifth_sync_is_refused(wire: VirtualWire):
