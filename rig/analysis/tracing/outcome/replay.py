@@ -46,10 +46,11 @@ def _kinematic_error(s: Signals, model: Model) -> Array | None:
     for _ in range(TURNS):
         moved = follow(s, model, led, x[:n], stiff * x[n:])
         wind_up, load, turned, read_l = _acting(moved, model)
+        new = np.concatenate([wind_up, load / stiff])
+        missed = max(np.max(np.abs(new - x)), np.max(np.abs(turned - read_m)) / s.ratio)
         if np.any(turned != read_m):
             read_m, led = turned, lead(s, model, turned)
-        new = np.concatenate([wind_up, load / stiff])
-        if np.max(np.abs(new - x)) < SETTLED:
+        if missed < SETTLED:
             return np.asarray(s.theta_m / s.ratio - moved.theta_l - read_l)
         x = mixed.next(x, new)
     return None
