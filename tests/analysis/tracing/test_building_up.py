@@ -80,3 +80,19 @@ def test_runs_that_turn_and_lock_tests_are_asked_apart(monkeypatch: pytest.Monke
     held: Any = SimpleNamespace(locked=True)
     assert builds_up([free, free, held]) == (True,)
     assert builds_up([free]) == ()
+
+
+def test_one_reversal_says_so_where_hardly_anything_is_left_or_a_lock_test_says_it_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Half a slow triangle has one: the other half is held out (exam 105, case 16)."""
+    held: Any = SimpleNamespace(locked=True)
+
+    def told(of_free: float, of_locked: float) -> tuple[bool, ...]:
+        found = {False: left(0.9, of_free, 0.9), True: left(0.9, of_locked, 0.9)}
+        monkeypatch.setattr(building_up, "_at_reversals", lambda run: (found[run.locked], 1))
+        return builds_up([free, held])
+
+    assert told(0.15, 0.9) == (False,)
+    assert told(0.45, 0.9) == ()
+    assert told(0.45, 0.5) == (False, True)

@@ -14,6 +14,7 @@ from rig.analysis.tracing.selection.instead_of import (
     FRICTIONS,
     at_a_vibration,
     below_zero,
+    hidden_by_the_gear,
     instead_of_an_inertia,
     of_a_spring_unseen,
 )
@@ -76,3 +77,19 @@ def test_a_friction_below_zero_is_told_only_where_it_is_surely_so(monkeypatch: p
     values = dict.fromkeys(BASELINE, 1e-6) | {"tau_c": -0.35, "B_m": -1e-3}
     s: Any = SimpleNamespace(value=values.__getitem__)
     assert below_zero(s, FRICTIONS) == {"tau_c"}
+
+
+@pytest.mark.parametrize(
+    ("beside", "without", "gone"),
+    [(40.0, 5.0, True), (9.0, 12.0, False), (50.0, 45.0, False)],  # of 36: hidden by it; small; once a turn in any case
+)
+def test_an_encoder_whose_error_only_the_gear_could_hide_is_a_torque(
+    monkeypatch: pytest.MonkeyPatch, beside: float, without: float, gone: bool
+) -> None:
+    def told(first: float) -> Any:
+        s = solution("motor_encoder_eccentricity")
+        values = dict.fromkeys(BASELINE, 1e-6) | {"a1": first, "b2": 36.0}
+        return SimpleNamespace(design=s.design, value=values.__getitem__, gram=np.eye(len(BASELINE)))
+
+    monkeypatch.setattr(module, "_without", lambda s, places: told(without))
+    assert hidden_by_the_gear(told(beside)) == (["motor_encoder_eccentricity"] if gone else [])

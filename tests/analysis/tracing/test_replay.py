@@ -1,5 +1,7 @@
 """The free simulation of the tracer against the library's own, and its effects against what they are by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -59,6 +61,20 @@ def test_an_angle_read_late_is_late_in_the_simulation():
     assert found is not None
     assert plain is not None
     assert (found - plain)[START:].mean() == pytest.approx(5e-4 * s.omega_l[0], rel=1e-3)
+
+
+def test_a_motor_read_by_an_eccentric_encoder_is_led_as_it_turned_and_not_as_it_was_read():
+    """It was believed settled before the motor had been led without the reading's error (exam 104, case 13)."""
+    even = turning(300.0)
+    too_much = 4e-3 * np.cos(even.theta_m)
+    read = replace(even, theta_m=even.theta_m + too_much)
+    effect = CATALOGUE["motor_encoder_eccentricity"]
+    terms = ((Term(effect, ()), 4e-3 * np.eye(2 * effect.ORDERS)[0]),)
+    found = _kinematic_error(read, Model(KNOWN, 1.0, 0.4, 0.0, terms))
+    plain = _kinematic_error(even, Model(KNOWN, 1.0, 0.4, 0.0, ()))
+    assert found is not None
+    assert plain is not None
+    np.testing.assert_allclose((found - plain)[START:], too_much[START:] / N, atol=2e-6)
 
 
 def test_a_state_follows_the_simulated_motion_not_the_measured_one_a_part_was_cut_from():

@@ -61,8 +61,8 @@ def instead_of_an_inertia(s: Solution) -> list[str]:
 
 def hidden_by_the_gear(s: Solution) -> list[str]:
     """An eccentric motor encoder beside which the kinematic error is larger once a turn than twice, and without it is
-    not. A wave generator has two lobes, and so its error: of 15 true ones in exams 97 to 105 the first order was at most
-    a fifth of the second. What would be in the angle and is not there is a torque once a turn that grows with the
+    not. A wave generator has two lobes, and so its error: of 15 true ones in exams 97 to 105 the first order was at
+    most 0.22 of the second. What would be in the angle and is not there is a torque once a turn that grows with the
     square of the speed, as an acceleration does (exam 105, case 08)."""
     mine = _by_name(s).get(MotorEncoderEccentricity.name, [])
     return [MotorEncoderEccentricity.name] if mine and _once(s) > 1.0 >= _once(_without(s, mine)) else []
