@@ -61,7 +61,7 @@ def advice(picture: Mapping[str, Any]) -> str:
     if picture["state"] == "fault" and UNCONFIRMED in picture["fault"]:
         return (
             "Press the hard-wired stop: there may be torque still. When the rig is whole, free to turn, and the drive "
-            "answers again, reset the fault; where that is refused, disconnect and connect."
+            "answers again, reset the fault; where that is refused, disconnect, connect and reset it then."
         )
     if picture["state"] == "fault":
         return "Look at the rig: when it is whole and free to turn, reset the fault. The proof is made anew after it."

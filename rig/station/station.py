@@ -38,6 +38,8 @@ WORDS = {
 }  # what is being carried out, until the job itself says more
 WAKES = ("hold", "stop", "halt")  # the switches say what; the packet only wakes
 
+LATCHED = " (latched before the bench was disconnected)"
+
 Job = Callable[["Station", Mapping[str, Any]], None]
 
 
@@ -58,6 +60,7 @@ class Station:
         self.person: PagePerson | None = None
         self.analysis: Analysis | None = None
         self.chain, self.silence = Chain(), Silence()
+        self.latched: dict[str, str] = {}  # the fault that a bench was let go of in, by its name
         self.closing = False
         self.keep: Callable[[str], None] = forget  # where a note goes that no run may follow
         self._next_reading = 0.0
@@ -258,10 +261,16 @@ class Station:
         hand, session.instruments.operator = session.instruments.operator, None
         self.person = PagePerson(self.teller, self.panel, self.attend, hand)
         session.hand = self.person
+        if fault := self.latched.pop(session.bench.file.name, ""):
+            session.supervisor.act(Act.TRIP, f"{fault.removesuffix(LATCHED)}{LATCHED}")
 
     def disconnect(self) -> None:
-        """Torque off first, then let go of every device. Idempotent; the act it belongs to goes on until it is over."""
+        """Torque off first, then let go of every device. Idempotent; the act it belongs to goes on until it is over. A
+        fault stays with the bench: it is reset by somebody who has seen to the rig, not by connecting anew."""
+        session = self.session
         self.stack.close()
+        if session is not None and session.supervisor.state is State.FAULT:
+            self.latched[session.bench.file.name] = session.supervisor.fault
         self.session = self.person = self.teller.supervisor = None
         known = self.status
         self.status = self.teller.status = Status(job=known.job, last_run=known.last_run, checks=known.checks)

@@ -17,8 +17,8 @@ from rig.station import jobs
 from rig.station.channel import Channel
 from rig.station.interrupts import Panel
 from rig.station.jobs import JOBS
-from rig.station.station import Station
-from rig.supervisor import State
+from rig.station.station import LATCHED, Station
+from rig.supervisor import Act, State
 from tests.runfile.test_room import Usage
 
 
@@ -113,3 +113,22 @@ def test_a_halt_pressed_while_something_else_than_a_run_is_carried_out_is_not_lo
     station.attend()
     said = [m["event"]["text"] for m in page.receive(1.0) if m["kind"] == "event"]
     assert said == ["halted while nothing ran: torque off, confirmed by the drive"]
+
+
+def test_a_fault_is_not_cleared_by_connecting_anew(line: tuple[Station, Channel]) -> None:
+    """Two clicks did what a reset does, and nobody had said that the rig was seen to."""
+    station, _ = line
+    bench = {"until": None, "bench": "twin", "clock": "virtual"}
+    station.take({"act": "connect", "id": "1", **bench})
+    station.need().supervisor.act(Act.TRIP, "shaft torque 71.00 N·m, limit ±60.00 N·m")
+    for _ in range(2):  # and said once, however often
+        station.take({"act": "disconnect", "id": "2", "until": None})
+        station.take({"act": "connect", "id": "3", **bench})
+    supervisor = station.need().supervisor
+    assert supervisor.state is State.FAULT
+    assert supervisor.fault == f"shaft torque 71.00 N·m, limit ±60.00 N·m{LATCHED}"
+    station.take({"act": "reset", "id": "4", "until": None})
+    assert supervisor.state is State.CONNECTED
+    station.take({"act": "disconnect", "id": "5", "until": None})
+    station.take({"act": "connect", "id": "6", **bench})
+    assert station.need().supervisor.state is State.CONNECTED
