@@ -23,6 +23,9 @@ new = tuple.__new__  # half the cost of a NamedTuple's own constructor, paid eve
 GLANCE = 0.05  # s between two looks that tell a turning motor: one count of 2000 a turn is 0.06 rad/s in it
 TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
 LOOKS, APART = 10, 0.01  # looks at the shaft torque of a rig at rest, s between two
+GLIMPSE = 0.005  # s between two looks at what has to tell something new
+PATIENCE = 0.2  # s for that before anything is energised: two messages of a line that sends ten a second
+ENERGISED = 0.05  # s for it once a drive is: it ends by itself when it hears nothing for a tenth of a second
 UNTOLD = Flag.STALE_TAU | Flag.FROZEN_TAU | Flag.SATURATED_TAU  # of a torque that is not that of now
 ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
 
@@ -140,6 +143,16 @@ class Instruments:
             return self.read(self.clock.wait_until(asked))
         self.latch()
         return self.read(self.clock.wait_until(asked + ANSWER))
+
+    def wake(self, oldest: float, patience: float = PATIENCE) -> Sample:
+        """Looks, for `patience` s at most, until nothing is older than `oldest` s; the last of them. A line that nobody
+        read for a while has thrown away what it kept, and tells something new with its next message. Who stays silent
+        all the same is not this one's to say.
+        """
+        give_up = self.clock.now() + patience
+        while (sample := self.look()).age > oldest and self.clock.now() < give_up:
+            self.clock.wait_until(self.clock.now() + GLIMPSE)
+        return sample
 
     def still_carried(self, fresh: float) -> float | None:
         """Mean of a few looks at the shaft torque, N·m; None where the sensor says nothing of now, silent for `fresh` s

@@ -16,7 +16,7 @@ from rig.core.procedure import Procedure, Setting, Steps
 from rig.core.sample import Sample, Setpoint
 from rig.core.units import RPM
 from rig.guard import WOUND, Guard, Trip, stale
-from rig.instruments import TURNS, Instruments
+from rig.instruments import ENERGISED, TURNS, Instruments
 from rig.process.interrupts import Interrupts
 from rig.process.realtime import RealTime
 from rig.supervisor import KEEP_CLEAR, PRESS, UNCONFIRMED, Act, State, Supervisor
@@ -121,10 +121,12 @@ class Loop:
 
     def _energised(self, procedure: Procedure, setting: Setting) -> Ending:
         try:
+            self.instruments.wake(self.guard.limits.stale)
             self.instruments.start()  # for the events meanwhile
             self.supervisor.act(Act.ENABLE)
             self.instruments.drive.enable(self.setpoints.mode)
-            self.instruments.start()  # a drive may take seconds, and the references of a run go by its time
+            self.instruments.wake(self.guard.limits.stale, ENERGISED)  # a drive may take seconds
+            self.instruments.start()  # and the references of a run go by its time
             self.supervisor.act(Act.RUN, procedure.title())
             self.running = True
             return self._tick(procedure, setting)

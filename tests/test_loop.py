@@ -10,6 +10,7 @@ from typing import ClassVar
 import pytest
 
 from rig.core.channels import Flag
+from rig.core.devices import TorqueReading
 from rig.core.errors import Exit, HdrigError, NotReady, RecorderError
 from rig.core.procedure import Envelope, Procedure, Setting, Steps
 from rig.core.sample import Mode, Sample, Torque
@@ -24,7 +25,6 @@ from rig.timing.ticks import LoopTiming
 from tests.fakes import LIMITS, SETTING, FakeWorld, ListSink, instruments
 
 
-@pytest.mark.slow
 @dataclass(frozen=True)
 class Constant(Procedure):
     """Half a newton metre for two seconds; calls `at` on the world at tick 500."""
@@ -75,6 +75,35 @@ def test_a_procedure_that_ends_is_completed_and_brings_its_finding() -> None:
     assert bench.supervisor.state is State.READY
     assert len(bench.sink.rows) == 2000  # 1999 commands after the first sample, and the last row with torque off
     assert bench.sink.rows[-1][1:3] == (0.0, 0.0)
+
+
+def test_a_line_that_nobody_read_for_a_while_is_read_until_it_tells_something_new(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """While an operator was asked, or a drive took seconds to be enabled, it kept what is old and threw it away: the
+    first look finds nothing of now, and a run must not trip on that."""
+    bench, looks = Bench(), []
+    sensor = bench.instruments.torque_sensor
+    assert sensor is not None
+    read = sensor.read
+
+    def unread() -> TorqueReading:
+        looks.append(bench.instruments.drive.enabled)  # type: ignore[attr-defined]
+        first = looks.count(looks[-1]) == 1  # before the drive is enabled, and after
+        return TorqueReading(bench.world.clock.t - 2.5, 0.0) if first else read()
+
+    monkeypatch.setattr(sensor, "read", unread)
+    assert bench.run().status == "completed"
+
+
+def test_a_line_that_stays_silent_is_waited_for_a_moment_and_then_is_a_trip(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench()
+    monkeypatch.setattr(bench.instruments.torque_sensor, "read", lambda: TorqueReading(-2.5, 0.0))
+    ending = bench.run()
+    assert ending.status == "tripped"
+    assert "no new torque-sensor sample" in ending.reason
+    assert bench.world.clock.t < 1.0
+    assert bench.torque_free()
 
 
 @pytest.mark.parametrize(
@@ -329,8 +358,12 @@ def test_a_torque_sensor_that_tells_nothing_of_now_is_not_believed_after_a_trip(
 def test_a_bus_that_fails_after_the_torque_is_off_undoes_no_halt(monkeypatch: pytest.MonkeyPatch) -> None:
     bench = Bench()
 
+    look = Instruments.look
+
     def gone(self: Instruments) -> Sample:
-        raise OSError("no such device")
+        if bench.interrupts.count:
+            raise OSError("no such device")
+        return look(self)
 
     monkeypatch.setattr(Instruments, "look", gone)
     ending = bench.run(bench.interrupts.halt)

@@ -70,13 +70,13 @@ def test_readings_are_stamped_when_they_were_made_to_two_tenths_of_a_millisecond
     def and_look(now: float):
         sample = read(now)
         w.wire.assembly.world.advance_to(w.wire.now())
-        truth.append((w.wire.now() - w.instruments.started, w.wire.assembly.world.truth().theta_m))
+        truth.append((w.wire.now(), w.wire.assembly.world.truth().theta_m))
         return sample
 
     w.instruments.read = and_look
     _, sink = run(w)
     rows = [row[0] for row in sink.rows if abs(row[0].omega_m) > 0.8]
-    t, theta = np.array(truth).T
+    t, theta = np.array(truth).T - [[w.instruments.started], [0.0]]
     ahead = np.array([np.interp(r.t, t, theta) - r.theta_m for r in rows])
     omega = np.array([r.omega_m for r in rows])
     late, _ = np.polyfit(omega, ahead, 1)  # the zero of the encoder drops out: it turns both ways
