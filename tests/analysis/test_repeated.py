@@ -32,6 +32,11 @@ def test_a_locked_output_rests() -> None:
     assert repeated(np.zeros(T.size), 0.1 * np.sin(T), FAR).rows.size == 0
 
 
+def test_a_locked_output_rests_while_the_motor_winds_it_up_both_ways() -> None:
+    """At ±100 N·m it goes 1.4 rad to and fro, and no load encoder hangs."""
+    assert repeated(np.zeros(T.size), 0.7 * np.sin(TURN * T / 30.0), FAR).rows.size == 0
+
+
 def test_a_motor_that_dwells_is_read_anew() -> None:
     stairs = np.interp(
         T, *zip(*((2.0 * i + dt, 3.0 * i + up) for i in range(30) for dt, up in ((0, 0), (1, 3))), strict=True)
@@ -49,6 +54,17 @@ def test_an_angle_that_stands_while_the_other_side_turns_is_missing() -> None:
     )
     assert "theta_l stood for 5 s at t = 3.000 s" in found.words("theta_l", T)
     assert repeated(x, None, FAR).rows.size == 0, "nothing says that the shaft turned"
+
+
+@pytest.mark.parametrize("share", [0.4, 0.6, 0.8])
+def test_an_angle_that_stands_to_the_end_while_the_other_side_goes_there_and_back_is_missing(share: float) -> None:
+    """A motor encoder that died after half of a run, in which the load came back to where it was: nothing was said."""
+    x, there_and_back = MOTOR.copy(), 40.0 * np.sin(TURN * 5 * T / 60.0)
+    stood = round((1 - share) * T.size)
+    x[stood:] = x[stood]
+    found = repeated(x, there_and_back / 50.0, FAR / 50)
+    assert set(range(stood + 1, T.size)) <= set(found.rows.tolist())
+    assert f"theta_m stood for {share * 60:.3g} s" in found.words("theta_m", T)
 
 
 @pytest.mark.parametrize("every", [2, 4, 20])

@@ -22,13 +22,14 @@ from rig.core.units import TURN
 Index = npt.NDArray[np.int64]
 
 FAR: Final = TURN / 6  # rad of the motor: no gear winds up so far, 150 N·m on the paper's
-DEAD: Final = 0.5  # of the rows: an angle that stood for most of a run is refused by what it says of the gear's ratio
+DEAD: Final = 0.9  # of the rows: an angle that stood all the time is refused by what it says of the gear's ratio
 COUNTS: Final = 3.0  # smallest steps from one new reading to the next: a coarse encoder goes by one or two
 OFTEN: Final = 2.0  # times as many repeats as readings a count up or down: of noise there are half as many
 GOES_ON: Final = 0.5  # of its way in a usual row: where it rests, the shaft does
 RARE: Final = 1e-3  # of the rows that move so: fewer repeats are chance, and move no figure
 FEWEST: Final = 20  # repeats at any rate
 BESIDE: Final = 10  # rows on either side, at least, from which the way of a row is taken
+LONG: Final = 500  # rows of a stay, in which the other side may have turned back
 CHANGES: Final = 4.0  # new readings on either side of it
 ROWS: Final = 200_000  # from which the smallest step is taken
 NONE: Final[Index] = np.empty(0, np.int64)
@@ -96,6 +97,10 @@ def _turned_through(first: Index, last: Index, other: Array, far: float, wrapped
     went = other[last] - other[first]
     if wrapped:
         went = (went + TURN / 2) % TURN - TURN / 2
+    for i in np.flatnonzero(last - first > LONG):  # there and back it went nowhere; a held gear winds up either way
+        way = other[first[i] : last[i] + 1]
+        way = way[np.isfinite(way)]
+        went[i] = max(np.abs(went[i]), np.ptp(np.unwrap(way) if wrapped else way) / 2) if way.size else 0.0
     there = np.abs(went) > far
     return list(zip(first[there].tolist(), last[there].tolist(), strict=True))
 

@@ -57,7 +57,8 @@ IGNORED = (signal.SIGTTIN, signal.SIGTTOU)  # the shell's ways of stopping a pro
 
 @final
 class Keys:
-    """While active, on a terminal, keys ask `interrupts`. Anywhere else it does nothing.
+    """While active, on a terminal, keys ask `interrupts`. Anywhere else only Ctrl-Z does, which comes as a signal: from
+    a terminal that something else is read from, or from whoever sends it.
 
     `energised` says whether torque may be on. Enter and leave in the main thread: signals are handled there.
     """
@@ -71,6 +72,7 @@ class Keys:
         self._before: dict[signal.Signals, Any] = {}
 
     def __enter__(self) -> Keys:
+        self._before[signal.SIGTSTP] = signal.signal(signal.SIGTSTP, self._suspend)
         try:
             terminal = sys.stdin.fileno()
             self._modes = termios.tcgetattr(terminal)
@@ -80,7 +82,6 @@ class Keys:
         self._woken, self._wake = os.pipe()
         for quiet in IGNORED:
             self._before[quiet] = signal.signal(quiet, signal.SIG_IGN)
-        self._before[signal.SIGTSTP] = signal.signal(signal.SIGTSTP, self._suspend)
         self._before[signal.SIGCONT] = signal.signal(signal.SIGCONT, self._resume)
         self._take()
         self._thread = threading.Thread(target=self._listen, name="keys", daemon=True)
@@ -90,16 +91,17 @@ class Keys:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._terminal is None:
-            return
-        os.write(self._wake, b"!")
-        self._thread.join()
-        self._give()
-        self._terminal = None
+        heard = self._terminal is not None
+        if heard:
+            os.write(self._wake, b"!")
+            self._thread.join()
+            self._give()
+            self._terminal = None
         for sig, handler in self._before.items():
             signal.signal(sig, handler)
-        os.close(self._wake)
-        os.close(self._woken)
+        if heard:
+            os.close(self._wake)
+            os.close(self._woken)
 
     @contextlib.contextmanager
     def paused(self) -> Iterator[None]:

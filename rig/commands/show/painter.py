@@ -20,13 +20,14 @@ from rig.process.streams import show_what_fits
 
 
 def main() -> None:
-    """`painter HOW [TERMINAL]`, HOW as in `screens`, TERMINAL the number of an open file."""
+    """`painter HOW [TERMINAL]`, HOW as in `screens`, TERMINAL the number of an open file: that which keys come from,
+    and without it none do."""
     how, *terminal = sys.argv[1:]
     for quiet in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(quiet, signal.SIG_IGN)  # it ends when its pipe does, so that the last words are seen
     show_what_fits(sys.stdout)
     try:
-        screen = Enriched(screen_for(how, sys.stdout))
+        screen = Enriched(screen_for(how, sys.stdout, keyed=bool(terminal)))
         for line in sys.stdin.buffer:
             screen.take(json.loads(line))
         screen.close()

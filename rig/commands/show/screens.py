@@ -27,15 +27,15 @@ class Screen(ABC):
         self.stream.flush()
 
 
-def screen_for(how: str, stream: TextIO) -> Screen:
-    """`how` is screen or json; anything else is lines."""
+def screen_for(how: str, stream: TextIO, keyed: bool = True) -> Screen:
+    """`how` is screen or json; anything else is lines. `keyed`: somebody's keys are heard, and a screen says which."""
     from rig.commands.show.json_lines import JsonLines
     from rig.commands.show.lines import Lines
     from rig.commands.show.terminal import Terminal
 
     match how:
         case "screen":
-            return Terminal(stream)
+            return Terminal(stream, keyed)
         case "json":
             return JsonLines(stream)
         case _:

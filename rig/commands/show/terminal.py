@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import textwrap
 import time
+from collections.abc import Sequence
 from typing import Any, TextIO, final
 
 from rig.commands.show.screens import Screen
 from rig.commands.show.words import late, peak
 
 KEYS = ("any key: halt (torque off)", "s, Ctrl-Z: stop", "h: hold", "Ctrl-C: stop, twice: halt")  # fit 80 columns
+SIGNALS = ("no keys are heard here (standard input is no terminal)", "Ctrl-Z: stop", KEYS[-1])
 APART = "  "
 BAR = 12  # characters
 HOLDING = "holding"  # of the states an event can carry
@@ -22,8 +24,10 @@ UP, CLEAR = "\x1b[1A", "\r\x1b[J"  # to the line above; from here to the end of 
 class Terminal(Screen):
     """Redrawn with every progress event."""
 
-    def __init__(self, stream: TextIO) -> None:
+    def __init__(self, stream: TextIO, keyed: bool = True) -> None:
+        """`keyed`: keys are heard."""
         super().__init__(stream)
+        self._keys = KEYS if keyed else SIGNALS
         self._foot = ""  # what stands there now
         self._run: dict[str, Any] = {}
         self._mark = ""
@@ -59,7 +63,7 @@ class Terminal(Screen):
     def _draw(self, event: dict[str, Any]) -> None:
         width = _width(self.stream)
         lines = [line[:width] for line in self._lines(event)]
-        self._put("", "\n".join([*lines, *keys_in(width)]))
+        self._put("", "\n".join([*lines, *keys_in(width, self._keys)]))
 
     def _lines(self, event: dict[str, Any]) -> list[str]:
         t, duration = event["t"], self._run["duration_s"]
@@ -98,10 +102,10 @@ class Terminal(Screen):
         self._foot = foot
 
 
-def keys_in(width: int) -> list[str]:
-    """What each key does, in lines of at most `width` characters: who has to stop a motor finds no key cut off."""
-    lines = [KEYS[0]]
-    for key in KEYS[1:]:
+def keys_in(width: int, keys: Sequence[str] = KEYS) -> list[str]:
+    """What each of `keys` does, in lines of at most `width` characters: who has to stop a motor finds none cut off."""
+    lines = [keys[0]]
+    for key in keys[1:]:
         longer = f"{lines[-1]}{APART}{key}"
         if len(longer) <= width:
             lines[-1] = longer

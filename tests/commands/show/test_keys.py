@@ -142,11 +142,16 @@ def test_ctrl_z_is_a_stop_while_the_motor_is_energised(keyboard: int) -> None:
         assert soon(lambda: interrupts.count == 1)
 
 
-def test_without_a_terminal_nothing_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_terminal_no_key_is_heard_and_ctrl_z_is_a_stop_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Standard input from a file, started in a terminal: it slept with the torque on, until the drive gave up."""
+    interrupts, before = Interrupts(), signal.getsignal(signal.SIGTSTP)
     with open(os.devnull) as nothing:
         monkeypatch.setattr(sys, "stdin", nothing)
-        with Keys(Interrupts(), lambda: True) as listening, listening.paused():
+        with Keys(interrupts, lambda: True) as listening, listening.paused():
             assert listening._terminal is None
+            os.kill(os.getpid(), signal.SIGTSTP)
+            assert soon(lambda: interrupts.count == 1)
+    assert signal.getsignal(signal.SIGTSTP) == before
 
 
 SLEEPER = """

@@ -182,6 +182,16 @@ def test_a_terminal_that_does_not_know_its_width_has_the_usual_one(
     assert all(line in stream.getvalue() for line in keys_in(79))
 
 
+def test_keys_that_nobody_hears_are_not_promised() -> None:
+    stream = Described()
+    screen = Terminal(stream, keyed=False)
+    for event in (RUN, {"event": "progress", **progress(1.0)}):
+        screen.take(event)
+    assert "any key" not in stream.getvalue()
+    assert "no keys are heard here" in stream.getvalue()
+    assert "Ctrl-C: stop, twice: halt" in stream.getvalue()
+
+
 class Described(io.StringIO):
     """Text with the number of a file."""
 
