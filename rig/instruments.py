@@ -23,6 +23,7 @@ new = tuple.__new__  # half the cost of a NamedTuple's own constructor, paid eve
 GLANCE = 0.05  # s between two looks that tell a turning motor: one count of 2000 a turn is 0.06 rad/s in it
 TURNS = 0.5  # rad/s, 5 rpm: a motor that is slower has come to rest, but for the noise of its speed
 LOOKS, APART = 10, 0.01  # looks at the shaft torque of a rig at rest, s between two
+UNREAD = 0.4  # s without a look, from which on a line may have thrown away what it kept
 GLIMPSE = 0.005  # s between two looks at what has to tell something new
 PATIENCE = 0.2  # s for that before anything is energised: two messages of a line that sends ten a second
 ENERGISED = 0.05  # s for it once a drive is: it ends by itself when it hears nothing for a tenth of a second
@@ -45,6 +46,7 @@ class Instruments:
 
     def __post_init__(self) -> None:
         self.started = 0.0  # s on the clock: t = 0 of the run
+        self._looked = self.clock.now()  # s on it: when a sample was last taken
         self._last = [NEVER, NEVER, NEVER]  # latch times seen last: motor, load, torque
         self.offsets = (LatchOffsets(), LatchOffsets())  # of load angle and torque, against the motor angle, as told
         self._mark = 0  # flags every row carries
@@ -73,6 +75,7 @@ class Instruments:
         except BaseException:
             self.close()
             raise
+        self._looked = self.clock.now()  # each driver has heard its device
         if any(identity.simulated for identity in found.values()):
             self._mark = int(Flag.SIMULATED)  # the twin over a wire, whose drivers cannot know
         elif self.operator is not None:
@@ -100,7 +103,7 @@ class Instruments:
         """The newest of every channel; never waits. `now` is when the tick began [s]: age is counted from there, by the
         devices' own latch times, so that a host that stalls within a tick does not pass for a silent device.
         """
-        last = self._last
+        last, self._looked = self._last, now
         t_m, theta_m, counts_m, tau_m, flags, fault = self.drive.read()
         flags |= self._mark
         if t_m == last[0]:
@@ -144,15 +147,16 @@ class Instruments:
         self.latch()
         return self.read(self.clock.wait_until(asked + ANSWER))
 
-    def wake(self, oldest: float, patience: float = PATIENCE) -> Sample:
-        """Looks, for `patience` s at most, until nothing is older than `oldest` s; the last of them. A line that nobody
-        read for a while has thrown away what it kept, and tells something new with its next message. Who stays silent
-        all the same is not this one's to say.
+    def wake(self, oldest: float, patience: float = PATIENCE) -> None:
+        """Looks, for `patience` s at most, until nothing is older than `oldest` s and what a look itself takes, where
+        nobody has looked for a while: a line may have thrown away what it kept, and tells something new with its next
+        message. Who stays silent all the same is not this one's to say.
         """
-        give_up = self.clock.now() + patience
-        while (sample := self.look()).age > oldest and self.clock.now() < give_up:
+        oldest, give_up = max(oldest, 2 * ANSWER), self.clock.now() + patience
+        if self.clock.now() - self._looked <= UNREAD:
+            return
+        while self.look().age > oldest and self.clock.now() < give_up:
             self.clock.wait_until(self.clock.now() + GLIMPSE)
-        return sample
 
     def still_carried(self, fresh: float) -> float | None:
         """Mean of a few looks at the shaft torque, N·m; None where the sensor says nothing of now, silent for `fresh` s

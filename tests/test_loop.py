@@ -85,15 +85,24 @@ def test_a_line_that_nobody_read_for_a_while_is_read_until_it_tells_something_ne
     bench, looks = Bench(), []
     sensor = bench.instruments.torque_sensor
     assert sensor is not None
-    read = sensor.read
+    read, drive = sensor.read, bench.instruments.drive
+    enable = drive.enable
+
+    def slowly(mode: Mode) -> None:
+        bench.world.clock.wait_until(bench.world.clock.t + 1.0)
+        enable(mode)
 
     def unread() -> TorqueReading:
-        looks.append(bench.instruments.drive.enabled)  # type: ignore[attr-defined]
+        looks.append(drive.enabled)  # type: ignore[attr-defined]
         first = looks.count(looks[-1]) == 1  # before the drive is enabled, and after
         return TorqueReading(bench.world.clock.t - 2.5, 0.0) if first else read()
 
     monkeypatch.setattr(sensor, "read", unread)
+    monkeypatch.setattr(drive, "enable", slowly)
+    bench.world.clock.wait_until(3.0)  # since they were connected
     assert bench.run().status == "completed"
+    assert looks.count(False) >= 2
+    assert looks.count(True) >= 2
 
 
 def test_a_line_that_stays_silent_is_waited_for_a_moment_and_then_is_a_trip(monkeypatch: pytest.MonkeyPatch) -> None:

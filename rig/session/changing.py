@@ -60,5 +60,5 @@ def show(session: Session, change: Change) -> str:
 def _wound_up(session: Session) -> float:
     """N·m at the torque sensor, at rest; 0 without a sensor."""
     session.come_to_rest()
-    tau = session.instruments.wake(session.bench.limits.stale).tau_l
+    tau = session.instruments.look().tau_l
     return 0.0 if math.isnan(tau) else tau
