@@ -26,7 +26,7 @@ LOOKS, APART = 10, 0.01  # looks at the shaft torque of a rig at rest, s between
 UNREAD = 0.4  # s without a look, from which on a line may have thrown away what it kept
 GLIMPSE = 0.005  # s between two looks at what has to tell something new
 PATIENCE = 0.2  # s for that before anything is energised: two messages of a line that sends ten a second
-ENERGISED = 0.05  # s for it once a drive is: it ends by itself when it hears nothing for a tenth of a second
+ENERGISED = 0.05  # s for it once a drive is: the benches that ship have watchdogs of 0.1 s and more
 UNTOLD = Flag.STALE_TAU | Flag.FROZEN_TAU | Flag.SATURATED_TAU  # of a torque that is not that of now
 ANSWER = 0.02  # s outside of a run: bus, adapter and a pseudo terminal on a busy machine
 

@@ -13,6 +13,7 @@ from rig.core.rows import stretches
 
 OFTEN: Final = 0.5  # of the rows with a new reading: from there on a reading is held for a row now and then, no more
 COUNTS: Final = 4.0  # of the sensor, from one reading to the next: a coarse one at rest goes on by one or two
+ROWS: Final = 200_000  # from which its count is taken: a run may have a day of them
 ROUNDED: Final = 1e-9  # of the largest reading: what the numbers' own rounding makes of two equal ones
 
 
@@ -32,11 +33,17 @@ def seldom_by_value(t: Array | None, torque: Array | None) -> str:
     it said, and then something that is many counts away, was held."""
     if torque is None or torque.size < 2:
         return ""
-    steps = np.abs(np.diff(torque))
+    steps = np.abs(np.diff(torque[:ROWS]))
     steps = steps[steps > 0.0]
-    if steps.size == 0 or float(np.median(steps)) < COUNTS * _count(torque):
+    if steps.size == 0 or float(np.median(steps)) < COUNTS * _count(torque[:ROWS]):
         return ""
-    return _said(t, steps.size + 1, torque.size)
+    parts = (torque[max(some.start - 1, 0) : some.stop] for some in stretches(torque.size))
+    return _said(t, 1 + sum(_changes(part) for part in parts), torque.size)
+
+
+def _changes(torque: Array) -> int:
+    """How many of some rows say something else than the one before."""
+    return int(np.count_nonzero(np.abs(np.diff(torque)) > 0.0))
 
 
 def _said(t: Array | None, fresh: int, rows: int) -> str:
