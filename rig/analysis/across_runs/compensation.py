@@ -153,29 +153,30 @@ def transmissibility(gear: GearFile, omega_m: float, orders: int, off: Array | N
 
 
 def expected(gear: GearFile, speed_rpm: float, before: Followed, rng: np.random.Generator) -> tuple[Expected, Expected]:
-    """Without and with compensation: θ̃_p through the model; then what is not known of it, and what the motor's loop
-    had left without compensation, which it is taken to leave with it. Intervals are those of gears that the gear file
-    allows, and of single turns.
+    """Without and with compensation, both in single turns, as they are measured, and both with what the motor's loop
+    had left without it: −θ̃_p through the model, and what is not known of θ̃_p. Intervals are those of gears that the
+    gear file allows, and of single turns.
     """
     series, omega_m = gear.kinematic_error.series, speed_rpm * RPM
     k = len(series.a)
     c = np.array(series.a) - 1j * np.array(series.b)
     unknown = np.resize(_draws(gear, rng), (DRAWS, k))
     gears = rng.standard_normal((DRAWS, 4))
-    may_be = [_wave((c + d) * transmissibility(gear, omega_m, k, off)) for d, off in zip(unknown, gears, strict=True)]
     n = np.arange(1, BINS // 4)
     waves = 2 / BINS * np.exp(-1j * np.multiply.outer(n, _grid()))
     loop = before.loop @ waves.T  # (turns, orders)
-    lag = loop[np.arange(DRAWS) % loop.shape[0]]
-    lag[:, :k] += unknown
-    left = [_wave(c * transmissibility(gear, omega_m, n.size, off)) for c, off in zip(lag, gears, strict=True)]
-    return _told([_wave(c * transmissibility(gear, omega_m, k))], may_be), _told(left, left)
+    model = transmissibility(gear, omega_m, n.size)
+    may_be = [transmissibility(gear, omega_m, n.size, off) for off in gears]
 
+    def told(error: Complex) -> Expected:
+        """Of a load that leaves its reference by `error` (draws, k) beside what the loop leaves."""
+        moved = loop[np.arange(DRAWS) % loop.shape[0]]
+        moved[:, :k] += error
+        high, rms = _figures([_wave(x * model) for x in moved])
+        highs, many = _figures([_wave(x * G) for x, G in zip(moved, may_be, strict=True)])
+        return Expected(float(np.mean(high)), float(np.sqrt(np.mean(rms**2))), _most(highs), _most(many))
 
-def _told(waves: list[Array], may_be: list[Array]) -> Expected:
-    """Figures of `waves`, with what 95 % of those have that `may_be`; each (BINS,)."""
-    (high, rms), (highs, many) = _figures(waves), _figures(may_be)
-    return Expected(float(np.mean(high)), float(np.sqrt(np.mean(rms**2))), _most(highs), _most(many))
+    return told(-(c + unknown)), told(unknown)
 
 
 def _figures(waves: list[Array]) -> tuple[Array, Array]:
