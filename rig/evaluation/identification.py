@@ -68,7 +68,7 @@ def identify(folders: Sequence[Path], terms: int, say: Say) -> Identification:
 
     runs, recordings, said = open_runs(folders, say)
     found, file = _fitted(runs, recordings, terms, say)
-    compared = predictions(recordings, file.gear(), terms)
+    compared = predictions(recordings, file, terms)
     doubt = misfit(compared)
     characteristics = beside(runs, say)
     if not characteristics:

@@ -14,7 +14,9 @@ from rig.analysis.motion.strokes import Stroke
 from rig.analysis.orders.revolutions import analyse_stroke
 from rig.core.units import ARCSEC, RPM, TURN
 from rig.model.gear import Gear
+from rig.model.gearfile import GearFile
 from rig.model.simulate import NoSteadyState, Waveform, at_speed
+from rig.model.simulate.spread import drawn_gears, half_widths
 
 FEWEST = 6  # revolutions
 GRID = 512  # points a turn
@@ -31,6 +33,7 @@ class Prediction:
     measured: float
     interval: tuple[float, float]
     predicted: float  # NaN where the gear does not turn steadily
+    half: float  # of its 95 % interval, from what is not known of the gear; NaN where nothing was measured of it
     pure: float  # peak to peak of θ̃_p: what speed adds is the rest
     rms: float
 
@@ -55,13 +58,14 @@ def misfit(made: Sequence[Prediction]) -> str:
     )
 
 
-def predictions(runs: Sequence[Recording], gear: Gear, terms: int) -> list[Prediction]:
+def predictions(runs: Sequence[Recording], file: GearFile, terms: int) -> list[Prediction]:
     """One for every unloaded run at speed under no loop, slowest first."""
-    made = [p for r in runs if not r.locked and r.tau_ext == 0.0 and (p := _of(r, gear, terms)) is not None]
+    gear, may_be = file.gear(), drawn_gears(file)
+    made = [p for r in runs if not r.locked and r.tau_ext == 0.0 and (p := _of(r, gear, may_be, terms)) is not None]
     return sorted(made, key=lambda p: abs(p.speed_rpm))
 
 
-def _of(run: Recording, gear: Gear, terms: int) -> Prediction | None:
+def _of(run: Recording, gear: Gear, may_be: list[Gear], terms: int) -> Prediction | None:
     # a loop that holds the speed bends the waveform: only what runs free is what the equations say
     level = [p for p in plateaus(run) if abs(p.omega) / RPM > SLOW and not p.followed]
     if not level:
@@ -76,12 +80,14 @@ def _of(run: Recording, gear: Gear, terms: int) -> Prediction | None:
     try:
         wave = at_speed(gear, rpm * RPM)
     except NoSteadyState:
-        return Prediction(run.name, rpm, value, interval, float("nan"), float("nan"), float("nan"))
+        return Prediction(run.name, rpm, value, interval, *[float("nan")] * 4)
     made = wave.orders(wave.kinematic_error, terms) / ARCSEC
     off = np.hypot(profile.cosine - made.real, profile.sine - made.imag)
     rms = float(np.sqrt(0.5 * np.sum(off**2)))
+    half = half_widths(may_be, lambda drawn: np.array([_swing(at_speed(drawn, rpm * RPM), terms)]))
+    pure = gear.kinematic_error.peak_to_peak() / ARCSEC
     return Prediction(
-        run.name, rpm, value, interval, _swing(wave, terms), gear.kinematic_error.peak_to_peak() / ARCSEC, rms
+        run.name, rpm, value, interval, _swing(wave, terms), float(half[0]) if half.size else np.nan, pure, rms
     )
 
 

@@ -87,11 +87,11 @@ def comparison(rows: Sequence[Prediction]) -> list[str]:
         return []
     width = max(len(p.run) for p in rows)  # whole names: cut ones are alike
     head = f"  {'θ̃ at speed, peak to peak, arcsec':{width + 3}s}"  # its tilde takes no room of its own
-    lines = [f"{head}  motor speed       measured  predicted  pure θ̃_p  rms between"]
+    lines = [f"{head}  motor speed       measured      predicted  pure θ̃_p  rms between"]
     for p in rows:
-        measured = estimate(p.measured, p.interval)
+        measured, predicted = estimate(p.measured, p.interval), quantity(p.predicted, p.half)
         lines.append(
-            f"    {p.run:{width}s} {p.speed_rpm:+8.1f} rpm {measured:>14s} {p.predicted:10.1f} {p.pure:9.1f} "
+            f"    {p.run:{width}s} {p.speed_rpm:+8.1f} rpm {measured:>14s} {predicted:>14s} {p.pure:9.1f} "
             f"{p.rms:12.2f}"
         )
     lines.append(

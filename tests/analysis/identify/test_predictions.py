@@ -7,7 +7,7 @@ from rig.analysis.identify.predictions import Prediction, misfit
 
 def run(name: str, rms: float, half: float = 1.4) -> Prediction:
     """Of one run at 310 rpm, ± `half` arcsec peak to peak."""
-    return Prediction(name, 310.0, 145.0, (145.0 - half, 145.0 + half), 144.0, 93.4, rms)
+    return Prediction(name, 310.0, 145.0, (145.0 - half, 145.0 + half), 144.0, 1.0, 93.4, rms)
 
 
 def test_numbers_that_make_the_error_what_it_is_are_left_alone() -> None:

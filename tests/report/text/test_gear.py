@@ -30,7 +30,7 @@ def test_a_delay_is_given_in_microseconds_and_what_is_said_already_is_not_said_a
 
 def test_runs_whose_names_begin_alike_are_told_apart() -> None:
     names = [f"1121-2311-constant-torque-TWIN-40-50-{tail}" for tail in ("662f", "d2b2")]
-    lines = comparison([Prediction(name, 120.0, 110.0, (107.0, 113.0), 113.0, 93.0, 1.6) for name in names])
+    lines = comparison([Prediction(name, 120.0, 110.0, (107.0, 113.0), 113.0, 0.9, 93.0, 1.6) for name in names])
     *rows, how = lines[1:]
     assert all(name in line for name, line in zip(names, rows, strict=True))
     assert "torque of the motor that is constant" in how
