@@ -65,15 +65,19 @@ def test_of_two_sizes_that_may_be_zero_the_one_that_is_not_needed_goes(
     assert needless.without_insignificant(with_(["stribeck", "presliding"], False), (), nothing).names == set(left)
 
 
-@pytest.mark.parametrize(("plain", "needed", "half", "left"), [
-    (True, True, 0.11, {"stribeck"}), (False, True, 0.11, set()), (True, False, 0.11, set()), (True, True, 4.0, set()),
+@pytest.mark.parametrize(("plain", "needed", "half", "together", "left"), [
+    (True, True, 0.11, 1.0, {"stribeck"}), (False, True, 0.11, 1.0, set()), (True, False, 0.11, 1.0, set()),
+    (True, True, 4.0, 1.0, set()), (True, True, 4.0, 67.0, {"stribeck"}), (False, True, 4.0, 67.0, set()),
 ])  # fmt: skip
 def test_a_fall_that_is_all_there_is_stays_whatever_it_is_at_rest(
-    monkeypatch: pytest.MonkeyPatch, plain: bool, needed: bool, half: float, left: set[str]
+    monkeypatch: pytest.MonkeyPatch, plain: bool, needed: bool, half: float, together: float, left: set[str]
 ) -> None:
     """Runs at three speeds tell that friction falls, and not how large it is where none of them was (exam 67, 42); of
-    what may be forty times itself, or as much the other way, nothing is told (66, 02)."""
+    what may be forty times itself, or as much the other way, nothing is told (66, 02), unless its coefficients together
+    are: a drive that heats itself loses what is constant or what goes with the speed."""
     monkeypatch.setattr(needless, "_few_repeats", lambda p, runs: True)
+    monkeypatch.setattr(needless, "covariance", lambda s: None)
+    monkeypatch.setattr(needless, "_told", lambda s, known, terms: together)
 
     def with_(names: list[str], loud: bool) -> Any:
         scores = [scored(name, 9.0, all_there_is=plain) for name in names]
