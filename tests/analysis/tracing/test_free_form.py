@@ -16,6 +16,7 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.free_form import along_another as another
 from rig.analysis.tracing.free_form import drawn as drawn_of
 from rig.analysis.tracing.free_form import fitted as fitted_of
+from rig.analysis.tracing.free_form.along import BY_THE_CLOCK
 from rig.analysis.tracing.free_form.factors import began, hats, motor_waves, past_torque, turned
 from rig.analysis.tracing.free_form.forms import forms
 from rig.analysis.tracing.free_form.ranges import Ranges
@@ -253,13 +254,17 @@ def test_a_form_that_foretells_the_noise_of_a_sensor_is_told_by_its_reading(
         ("speed", {"load": 100.0}, "load"),
         ("speed", {"speed": 50.0, "load": 90.0, "memory": 100.0}, "load"),
         ("speed", {"speed": 3.0, "load": 10.0}, None),  # nothing speaks for any
+        ("memory", {"memory": 50.0, "time": 100.0}, "time"),  # what settles anew in every run
+        ("memory", {"memory": 50.0, BY_THE_CLOCK: 100.0}, None),  # runs lie one after another, whatever they remember
+        ("speed", {"speed": 50.0, BY_THE_CLOCK: 100.0}, "time"),
     ],
 )
 def test_another_coordinate_is_said_where_far_more_speaks_for_it(
     said: str, evidence: dict[str, float], expected: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(another, "of_some_rows", lambda p, s: s)
-    monkeypatch.setattr(another, "_best_along_each", lambda p, s: {n: (n, e) for n, e in evidence.items()})
+    made = {"time" if n == BY_THE_CLOCK else n: (SimpleNamespace(words=n), e) for n, e in evidence.items()}
+    monkeypatch.setattr(another, "_best_along_each", lambda p, s: made)
     monkeypatch.setattr(another, "fitted", lambda p, s, form: None)
     takes = {True: 0.9, False: 0.7}  # of what is left; less than what is said takes, the form is no better
     for enough in (True, False):

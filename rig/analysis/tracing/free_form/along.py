@@ -54,6 +54,8 @@ HATTED: Final[Mapping[str, Hatted]] = {
     "time": Hatted(lambda s: s.t, "the time", False),
     "temperature": Hatted(lambda s: s.temperature, "the temperature", True),
 }
+BY_THE_CLOCK: Final = f"a curve along {HATTED['time'].words}"
+"""A form's last words, where it runs along the campaign's own time."""
 OVER: Final = ("speed", "load", "time")
 """What a surface may be over, beside the coordinate."""
 

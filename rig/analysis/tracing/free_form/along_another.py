@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.free_form.along import BY_THE_CLOCK
 from rig.analysis.tracing.free_form.fitted import Fitted, fitted, likeliest, of_some_rows, possible
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.prepared import Prepared
@@ -30,7 +31,8 @@ def along_another(p: Prepared, s: Solution, said: Home) -> Home | None:
     """Another coordinate along which fitted runs want a form by far more than any along what is `said`, a plain one in
     the place of time or memory by more; None where there is none, or a step at one moment or the clock is said. Where
     the difference is less, what two of them share is now and then drawn better along the wrong one; and an order that
-    no form has is not outdone by one that takes less of what is left."""
+    no form has is not outdone by one that takes less of what is left. Nor is a memory outdone by the campaign's clock:
+    whatever a memory makes of single runs, a curve through the times they were taken at draws."""
     if said.first or said.coordinate not in (*PLAIN, *ANYTHING):
         return None
     s = of_some_rows(p, s)
@@ -43,7 +45,11 @@ def along_another(p: Prepared, s: Solution, said: Home) -> Home | None:
     def far_less(theirs: float, name: str) -> bool:
         return theirs > EVIDENCE and mine < (PLAIN_ENOUGH if simpler(name) else FAR_LESS) * theirs
 
-    better = {name: theirs for name, (_, theirs) in best.items() if far_less(theirs, name)}
+    def dates_runs(form: FreeForm) -> bool:
+        return said.coordinate == "memory" and form.words.endswith(BY_THE_CLOCK)
+
+    found = {name: theirs for name, (form, theirs) in best.items() if not dates_runs(form)}
+    better = {name: theirs for name, theirs in found.items() if far_less(theirs, name)}
     if not better:
         return None
     name = max(better, key=lambda n: better[n] * (1.0 if n in PLAIN else PLAIN_ENOUGH))
