@@ -91,8 +91,7 @@ def comparison(rows: Sequence[Prediction]) -> list[str]:
     for p in rows:
         measured, predicted = estimate(p.measured, p.interval), quantity(p.predicted, p.half)
         lines.append(
-            f"    {p.run:{width}s} {p.speed_rpm:+8.1f} rpm {measured:>14s} {predicted:>14s} {p.pure:9.1f} "
-            f"{p.rms:12.2f}"
+            f"    {p.run:{width}s} {p.speed_rpm:+8.1f} rpm {measured:>14s} {predicted:>14s} {p.pure:9.1f} {p.rms:12.2f}"
         )
     lines.append(
         "    predicted at a torque of the motor that is constant: a loop that holds the speed bends the waveform"

@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.fit.channels import ORDERS, is_measured, series, slopes
+from rig.analysis.tracing.fit.channels import ORDERS
+from rig.analysis.tracing.fit.columns import series, slopes
+from rig.analysis.tracing.fit.rows import is_measured
 from rig.model.effect import MEASURED
 
 

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.answer import Status
-from rig.analysis.tracing.fit.channels import INDEX, rows
+from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.model import design, fit
+from rig.analysis.tracing.fit.rows import rows
 from rig.analysis.tracing.floor.held_out import HeldOut
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.fit.channels import Rows
 from rig.analysis.tracing.fit.equations import Equations, Noise
+from rig.analysis.tracing.fit.rows import Rows
 from rig.analysis.tracing.residual.joined import _elsewhere
 
 KEY = (0, "M")

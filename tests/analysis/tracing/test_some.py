@@ -11,9 +11,9 @@ import pytest
 
 from rig.analysis.tracing.fit import some as module
 from rig.analysis.tracing.fit.bank import fill, reach
-from rig.analysis.tracing.fit.channels import Rows
 from rig.analysis.tracing.fit.equations import Equations, Noise
 from rig.analysis.tracing.fit.model import design, fit
+from rig.analysis.tracing.fit.rows import Rows
 from rig.analysis.tracing.fit.some import Bounds, Stretches, laid_out, search_some, some
 from rig.analysis.tracing.prepared import prepare
 from rig.analysis.tracing.runs.campaign import read_campaign

@@ -9,8 +9,9 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import CHANNELS, Rows, is_measured, rows, shared_columns, unmasked
+from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.footprint import footprint
+from rig.analysis.tracing.fit.rows import Rows, is_measured, rows, shared_columns, unmasked
 from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import MEASURED, Array, Effect, Known, Port, Shape
 from rig.process.workers import WORKERS

@@ -13,10 +13,11 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import INDEX, joined, later_by_a_second
+from rig.analysis.tracing.fit.channels import INDEX
 from rig.analysis.tracing.fit.covariance import covariance, is_sure
 from rig.analysis.tracing.fit.equations import Bare, Key
 from rig.analysis.tracing.fit.model import UNSEEN, Design, Part, Solution, solve
+from rig.analysis.tracing.fit.rows import joined, later_by_a_second
 from rig.core.quantiles import Z95
 from rig.model.effect import Array
 

@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import again
 from rig.analysis.tracing.fit.equations import Equations, Term, acting
 from rig.analysis.tracing.fit.learnt import change, learnt
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.fit.rows import again
 from rig.analysis.tracing.runs.recording import Recording
 from rig.model.effect import Array, Port, Signals
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rig.analysis.tracing.fit.beside_zero import beside_its_zero
-from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES, third_rate
+from rig.analysis.tracing.fit.channels import INDEX, ORDERS, SERIES
 from rig.analysis.tracing.fit.covariance import between_runs, covariance
 from rig.analysis.tracing.fit.curves import Compliance, Curves
 from rig.analysis.tracing.fit.equations import Term
@@ -17,6 +17,7 @@ from rig.analysis.tracing.fit.learnt import damping_of
 from rig.analysis.tracing.fit.model import UNSEEN, Solution, extended, fit, solve
 from rig.analysis.tracing.fit.refine import nudged
 from rig.analysis.tracing.fit.returning import by_what_returns
+from rig.analysis.tracing.fit.rows import third_rate
 from rig.core.quantiles import Z95
 from rig.core.units import ARCSEC
 from rig.model.effect import Array, Effect, Fit, Parameter, parameter

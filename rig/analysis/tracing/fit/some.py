@@ -15,10 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from rig.analysis.tracing.fit.bank import Bank
-from rig.analysis.tracing.fit.channels import CHANNELS, Rows
+from rig.analysis.tracing.fit.channels import CHANNELS
 from rig.analysis.tracing.fit.equations import Equations, Key
 from rig.analysis.tracing.fit.leaning import carrying, terms_of
 from rig.analysis.tracing.fit.model import Design, Solution, design, fit
+from rig.analysis.tracing.fit.rows import Rows
 from rig.analysis.tracing.fit.search import Found, Scored, ranking_beside, search
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.smoothing import Smoother

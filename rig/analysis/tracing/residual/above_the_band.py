@@ -15,9 +15,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.fit.channels import ORDERS, unmasked
+from rig.analysis.tracing.fit.channels import ORDERS
 from rig.analysis.tracing.fit.equations import Key, unmasked_columns
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.fit.rows import unmasked
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.smoothing import Smoother
 from rig.analysis.tracing.thresholds import RATE

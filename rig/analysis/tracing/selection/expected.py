@@ -13,10 +13,11 @@ from typing import Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS, is_measured, rows
+from rig.analysis.tracing.fit.channels import BASELINE, CHANNELS
 from rig.analysis.tracing.fit.equations import Term
 from rig.analysis.tracing.fit.led import follow, lead, model_of
 from rig.analysis.tracing.fit.model import Design, Solution, design, extended, fit, solve
+from rig.analysis.tracing.fit.rows import is_measured, rows
 from rig.analysis.tracing.runs.recording import Recording
 from rig.analysis.tracing.runs.sliding import direction
 from rig.core.units import RPM

@@ -144,7 +144,7 @@ def without_idle(selected: Selected, runs: Sequence[int], covered: Reach) -> Sel
 def _told(s: Solution, known: Array, terms: Sequence[int]) -> float:
     """Squares of the coefficients of some terms over what is known of them (p, p), a coefficient."""
     at = np.concatenate([np.arange(s.x.size)[s.design.place(term)] for term in terms])
-    x = s.x[at]
+    x: Array = s.x[at]
     return float(x @ np.linalg.pinv(known[np.ix_(at, at)]) @ x) / max(x.size, 1)
 
 
