@@ -62,6 +62,8 @@ class Par(NamedTuple):
     bw_x: float
     bw_beta: float
     bw_n: float
+    bw_delta: float
+    slip_back: float
     t_slow: float
     back_driven: float
     heat_gain: float
@@ -162,12 +164,13 @@ def hysteresis(s, par, tab, data, dphi):
     if par.hysteresis == MAXWELL:
         for i in range(tab.slips):
             most = data[tab.slip_x + i]
-            x = min(max(s[Z_HYST + i] + dphi, -most), most)
+            x = min(max(s[Z_HYST + i] + dphi, -par.slip_back * most), most)
             s[Z_HYST + i] = x
             torque += data[tab.slip_k + i] * x
     elif par.hysteresis == BOUC_WEN:
         z = s[Z_HYST] / par.bw_x
-        grow = 1.0 - np.abs(z) ** par.bw_n * (par.bw_beta * np.sign(dphi * z) + (1.0 - par.bw_beta))
+        lopsided = par.bw_beta * np.sign(dphi * z) + (1.0 - par.bw_beta) + par.bw_delta * np.sign(dphi)
+        grow = 1.0 - np.abs(z) ** par.bw_n * lopsided
         s[Z_HYST] += dphi * grow
         torque += par.bw_k * s[Z_HYST]
     return torque

@@ -1,4 +1,5 @@
-"""Rate-independent loop of torque against wind-up [physics B2]: elasto-slip (textbook), Bouc-Wen, Dahl."""
+"""Rate-independent loop of torque against wind-up [physics B2]: elasto-slip (textbook), Bouc-Wen, Dahl; and two whose
+branches are not alike, slip that gives way sooner one way and an asymmetric Bouc-Wen law."""
 
 from __future__ import annotations
 
@@ -34,8 +35,23 @@ def dahl(builder: Builder, rng: np.random.Generator, strength: float) -> Paramet
     return {"loop_half_width_Nm": torque, "reach_rad": reach}
 
 
+def uneven_slip(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    """Eight elements that hold less one way than the other."""
+    back = pick(rng, 0.35, 0.7)
+    builder.set(slip_back=back)
+    return {**maxwell(builder, rng, strength), "holds_less_back_by": back}
+
+
+def lopsided(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    delta = pick(rng, 0.15, 0.4) * float(rng.choice([-1, 1]))
+    builder.set(bw_delta=delta)
+    return {**bouc_wen(builder, rng, strength), "delta": delta}
+
+
 FORMS = (
     Form("hysteretic_stiffness", "maxwell", maxwell, textbook=True),
     Form("hysteretic_stiffness", "bouc_wen", bouc_wen),
     Form("hysteretic_stiffness", "dahl", dahl),
+    Form("hysteretic_stiffness", "uneven_slip", uneven_slip),
+    Form("hysteretic_stiffness", "lopsided", lopsided),
 )
