@@ -9,6 +9,8 @@ REFERENCES: dict[str, str] = {
     "compensation methods for the control of machines with friction, Automatica 30 (1994) 1083-1138",
     "hess1990": "D. P. Hess, A. Soom, Friction at a lubricated line contact operating at oscillating sliding "
     "velocities, ASME Journal of Tribology 112 (1990) 147-152",
+    "friedrich2008": "F. Friedrich, A. Kempe, V. Liebscher, G. Winkler, Complexity penalized M-estimation: fast "
+    "computation, J. Computational and Graphical Statistics 17 (2008) 201-224",
     "fuller1987": "W. A. Fuller, Measurement Error Models, Wiley (1987)",
     "cody1980": "W. J. Cody, W. Waite, Software Manual for the Elementary Functions, Prentice-Hall (1980)",
     "liang1986": "K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, "

@@ -197,7 +197,7 @@ def beside(p: Prepared, s: Solution, covered: Reach, rough: bool = False) -> tup
     runs = p.split.fitted
     eq = s.design.eq
     free = s if not eq.own else replace(s, design=design(replace(eq, own={}), s.design.terms, runs))
-    own = find(free, p.split)
+    own = p.own if p.own.many else find(free, p.split)
     columns = own.columns()
     same = rough and not eq.own and not columns
     with_own = s if same else fit(design(replace(eq, own=columns), s.design.terms, runs))

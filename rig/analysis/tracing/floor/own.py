@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.model import Solution, design
@@ -16,19 +17,31 @@ from rig.analysis.tracing.floor.ringing import ringing
 from rig.analysis.tracing.floor.shaken_load import shaken_load
 from rig.analysis.tracing.floor.shaken_motor import shaken_motor
 from rig.analysis.tracing.floor.sidebands import sidebands
-from rig.analysis.tracing.floor.steps import LOST, Steps, explained, find_steps, lost_counts, step_columns
+from rig.analysis.tracing.floor.stairs import stairs
+from rig.analysis.tracing.floor.steps import (
+    LOST,
+    Steps,
+    explained,
+    find_steps,
+    lost_counts,
+    placed,
+    square_taken,
+    step_columns,
+)
 from rig.analysis.tracing.floor.vibration import VIBRATION, find_vibration
 from rig.analysis.tracing.runs.alike import repeats
 from rig.analysis.tracing.runs.holdout import HELD_PART, Split
 from rig.analysis.tracing.thresholds import OWN
 from rig.model.effect import Array, Parameter
 
+PLAINLY: Final = 1.2  # times the sum of squares
+
 
 @dataclass(frozen=True)
 class Own:
     """Columns (n, q) by effect and block, the effects' parameters, a line beside the motion that is no effect of the
     library, notes on effects in a sentence each, columns of what is no effect but how a run began or that it jumped
-    under load, and that jump."""
+    under load, and that jump. `many`: counts are lost again and again, by which an effect may seem to be there."""
 
     made: dict[str, dict[Key, Array]]
     parameters: dict[str, tuple[Parameter, ...]]
@@ -36,6 +49,7 @@ class Own:
     notes: Mapping[str, str] = field(default_factory=dict)
     nameless: Mapping[Key, Array] = field(default_factory=dict)
     jumped: OnceUnderLoad | None = None
+    many: bool = False
 
     def columns(self) -> dict[Key, Array]:
         """Of all effects together, of the line and of what has no name."""
@@ -60,7 +74,11 @@ def find(s: Solution, parts: Split) -> Own:
     again = any(term.name == LOST.name for term in s.design.terms)  # again and again, by one law for all runs
     steps = None if again else find_steps(eq, everywhere, s.value("compliance"))
     # jumps come first: what they shift single runs by looks like delays, and no delay makes any
-    if steps is not None and (stepping := _stepping(eq, everywhere, own, steps, whole)):
+    stepping = None if steps is None else _stepping(eq, everywhere, own, steps, whole)
+    if not again and (rows := stairs(eq, everywhere)):
+        many = _stepping(eq, everywhere, replace(own, many=True), placed(eq, everywhere, rows), whole)
+        stepping = _that_takes_more(everywhere, many, stepping)
+    if stepping is not None:
         return stepping
     if not _is_late(s.design.terms) and (late := own_delays(s, whole, runs)) is not None:
         return _with(own, SKEW.name, late.columns, late.parameters(), late.sentence())
@@ -101,6 +119,14 @@ def _stepping(
     if (jumped := once_under_load(eq, everywhere, steps)) is not None:
         return replace(own, nameless=joined([own.nameless, columns]), jumped=jumped)
     return _with(own, LOST.name, columns, steps.parameters())
+
+
+def _that_takes_more(everywhere: Mapping[Key, Array], many: Own | None, few: Own | None) -> Own | None:
+    """Stairs where they take plainly more of A than the steps that stand out one by one, which have fewer numbers."""
+    if many is None or few is None:
+        return many or few
+    taken = [sum(square_taken(everywhere, own.made.get(LOST.name, {})).values()) for own in (many, few)]
+    return many if taken[0] > PLAINLY * taken[1] else few
 
 
 def _with(own: Own, name: str, columns: dict[Key, Array], words: tuple[Parameter, ...], note: str = "") -> Own:

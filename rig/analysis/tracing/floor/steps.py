@@ -25,6 +25,8 @@ REACH = WINDOW + EDGE  # rows on either side of a jump that are compared
 APART = 5.0  # usual steps between two rows: something was left out there
 SEEN_ROUND = 0.5  # length of the mean of all angles as unit vectors: half a turn and more was seen
 ONE_ANGLE = 4.6  # n·R² beyond which chance gets once in a hundred times, −ln 0.01
+OF_MANY = 9.2  # the same once in ten thousand times, of MORE jumps: at one angle they have n, and are there in all runs
+MORE = 10
 IN_THE_TORQUE = 0.5  # of a jump, which the torque sensor shows too
 AS_FAST = 0.2  # relative: ripple of a speed loop is less, a stop within a held-out part more
 SAME_SPEED = 0.1  # relative: steps of speed are larger, ripple within a sixth of a second smaller
@@ -96,11 +98,16 @@ def find_steps(eq: Equations, e: Mapping[Key, Array], compliance: float = 0.0) -
     for run, more in _in_other_parts(eq, e, rows, sizes).items():
         found = sorted([*zip(rows.get(run, ()), sizes.get(run, ()), strict=True), *more])
         rows[run], sizes[run] = tuple(at for at, _ in found), tuple(size for _, size in found)
-    placed = {run: [_placed(eq, e, run, row) for row in at] for run, at in rows.items()}
-    rows = {run: tuple(row for row, _ in found) for run, found in placed.items()}
+    return placed(eq, e, rows)
+
+
+def placed(eq: Equations, e: Mapping[Key, Array], about: Mapping[int, Sequence[int]]) -> Steps:
+    """Jumps of A near those rows of each run, where all channels of `e` together have them, and as high as they are."""
+    found = {run: [_placed(eq, e, run, row) for row in at] for run, at in about.items()}
+    rows = {run: tuple(row for row, _ in each) for run, each in found.items()}
     high = {run: heights(e[run, "A"], at) for run, at in rows.items()}
     sizes, errors = ({run: tuple(of[i] for of in each) for run, each in high.items()} for i in (0, 1))
-    return Steps(rows, sizes, {run: tuple(side for _, side in found) for run, found in placed.items()}, errors)
+    return Steps(rows, sizes, {run: tuple(side for _, side in each) for run, each in found.items()}, errors)
 
 
 def _sure(e: Array, onward: Mask) -> list[tuple[int, float]]:
@@ -294,7 +301,8 @@ def _at_one_angle(eq: Equations, steps: Steps, per_turn: float) -> bool:
     jumps = np.concatenate([theta[list(rows)] for theta, rows in zip(thetas, steps.rows.values(), strict=True)])
     seen, found = (np.mean(np.exp(1j * x / per_turn)) for x in (np.concatenate(thetas), jumps))
     apart = abs(found - seen) ** 2 / (1.0 - min(abs(seen) ** 2, SEEN_ROUND))
-    return bool(abs(seen) < SEEN_ROUND and jumps.size * apart > ONE_ANGLE)
+    least = ONE_ANGLE if jumps.size < MORE else OF_MANY
+    return bool(abs(seen) < SEEN_ROUND and jumps.size * apart > least)
 
 
 def step_columns(eq: Equations, steps: Steps) -> dict[Key, Array]:
@@ -311,11 +319,16 @@ def explained(eq: Equations, e: Mapping[Key, Array], columns: Mapping[Key, Array
     """Share of what is left in A beyond a run's repeats that columns of their own take, in the blocks of `e` that have
     some; of one that has no repeat without them, beyond the floor. What a step does to the torques is no measure: it
     has another unit, and is hardly seen there. Nor is the mean of a run: it is where its encoders began to count."""
+    taken = square_taken(e, columns)
     e = {key: x - x.mean() for key, x in e.items() if key[1] == "A"}
-    own = {key: orthonormal(x - x.mean(0)) for key, x in columns.items() if key in e}
-    taken = {key: float(np.sum((q.T @ e[key]) ** 2)) for key, q in own.items()}
-    excess = sum(_excess(eq, e, key, own, work) for key, work in taken.items())
+    excess = sum(_excess(eq, e, key, taken.keys(), work) for key, work in taken.items())
     return sum(taken.values()) / max(excess, 1e-300)
+
+
+def square_taken(e: Mapping[Key, Array], columns: Mapping[Key, Array]) -> dict[Key, float]:
+    """Sum of squares about its mean that columns of their own take of each block of A that has some, rad²."""
+    own = {key: orthonormal(x - x.mean(0)) for key, x in columns.items() if key in e and key[1] == "A"}
+    return {key: float(np.sum((q.T @ (e[key] - e[key].mean())) ** 2)) for key, q in own.items()}
 
 
 def _excess(eq: Equations, e: Mapping[Key, Array], key: Key, own: Collection[Key], taken: float) -> float:

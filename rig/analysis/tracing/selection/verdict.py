@@ -11,6 +11,7 @@ from rig.analysis.tracing.answer import Status, Verdict
 from rig.analysis.tracing.fit.channels import WHOLE
 from rig.analysis.tracing.fit.equations import Key
 from rig.analysis.tracing.fit.model import Solution
+from rig.analysis.tracing.floor.steps import LOST
 from rig.analysis.tracing.prepared import Prepared
 from rig.analysis.tracing.residual.bent_sensor import SPRINGS, is_the_sensors
 from rig.analysis.tracing.residual.drifting_zeros import drifting_zeros
@@ -106,7 +107,8 @@ def _with_a_remainder(asked: Asked, where: Sequence[Home]) -> Conclusion | None:
     left = max((score.left for score in asked.scores), default=0.0)
     mostly = _done(asked) > MOSTLY and total < 2 * EXPLAINED and left < AMISS
     all_plain = bool(asked.plain) and all(x.name in asked.plain or x.all_there_is for x in asked.scores)
-    sure = asked.has_repeats or all_plain
+    again_and_again = asked.p.own.many and asked.names == (LOST.name,)  # of so many counts a few are never found
+    sure = asked.has_repeats or all_plain or again_and_again
     if asked.p.own.line is not None or not (asked.names and sure and mostly):
         return None
     conclusion = _settled(asked, asked.names, first, total)
