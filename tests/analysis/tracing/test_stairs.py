@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.floor import stairs as module
+from rig.analysis.tracing.floor.own import Own, _that_takes_more
 from rig.analysis.tracing.floor.stairs import stairs
+from rig.analysis.tracing.floor.steps import LOST
 from rig.model.effect import Array
 
 ROWS = 600  # five seconds
@@ -81,3 +83,24 @@ def test_a_run_too_long_for_it_is_left_alone(monkeypatch: pytest.MonkeyPatch) ->
     made = left([walk(rng) for _ in range(RUNS)])
     monkeypatch.setattr(module, "LONGEST", ROWS - 1)
     assert stairs(rig(SPEEDS), made) == {}
+
+
+def own(columns: Array, many: bool = False) -> Own:
+    return Own({LOST.name: {(0, "A"): columns}, "other": {}}, {LOST.name: (), "other": ()}, None, many=many)
+
+
+def test_stairs_stand_where_they_take_plainly_more_than_single_steps() -> None:
+    y = 2.0 * (np.arange(ROWS) >= 200) + 1.0 * (np.arange(ROWS) >= 400)
+    one, two = (np.stack([1.0 * (np.arange(ROWS) >= row) for row in rows], 1) for rows in ((200,), (200, 400)))
+    few, many = own(one), own(two, many=True)
+    assert _that_takes_more({(0, "A"): y}, many, few) is few  # the second one adds little
+    y = y + 3.0 * (np.arange(ROWS) >= 400)
+    assert _that_takes_more({(0, "A"): y}, many, few) is many
+    assert _that_takes_more({(0, "A"): y}, None, few) is few
+    assert _that_takes_more({(0, "A"): y}, many, None) is many
+
+
+def test_without_lost_counts_none_are_lost_again_and_again() -> None:
+    made = own(np.zeros((ROWS, 1)), many=True)
+    assert made.without(["other"]).many
+    assert not made.without([LOST.name]).many

@@ -58,7 +58,8 @@ class Own:
     def without(self, names: Sequence[str]) -> Own:
         """The others."""
         made = {name: columns for name, columns in self.made.items() if name not in names}
-        return replace(self, made=made, parameters={name: self.parameters[name] for name in made})
+        parameters = {name: self.parameters[name] for name in made}
+        return replace(self, made=made, parameters=parameters, many=self.many and LOST.name in made)
 
 
 def find(s: Solution, parts: Split) -> Own:

@@ -55,11 +55,12 @@ def stairs(eq: Equations, e: Mapping[Key, Array]) -> dict[int, list[int]]:
 
 
 def _edges(y: Array) -> list[int]:
-    """Where the stairs nearest to `y` (n,) begin, step, and end."""
+    """Where the stairs nearest to `y` (n,) begin, step, and end; no step where none could leave so little as LEFT."""
     windows = y[: y.size // SHORT * SHORT].reshape(-1, SHORT)
-    if not windows.size:
+    # in many windows of such a run there is a step
+    usual = float(np.quantile(windows.var(axis=1), QUIET)) if windows.size else np.inf
+    if usual > LEFT * y.var():
         return [0, y.size]
-    usual = float(np.quantile(windows.var(axis=1), QUIET))  # in many windows of such a run there is a step
     return [int(at) for at in _nearest(y, COST * usual, SHORTEST)]
 
 
