@@ -118,7 +118,7 @@ def simulate_run(plan: RunPlan, machine: Machine, seeds: list[int]) -> Taken:
     steps = builder.sensors.motor_steps
     offset = np.zeros(n) if steps is None else steps(plan.name, n, chance)
     inner = FAST_INNER if plan.procedure == "constant_torque" else SLOW_INNER
-    guess = builder.rig.running_torque(plan.speed_rpm * 2 * np.pi / 60)
+    guess = builder.rig.running_torque(plan.speed_rpm * 2 * np.pi / 60) - plan.tau_ext / builder.rig.N
     out = np.empty((n, 4))
     integrate.run(
         machine.state, par, machine.tab, machine.data, drive(plan), reference(plan, n),

@@ -179,7 +179,7 @@ def assemble(request: Request, stage: Stage, parts: list[Part], clean: list[Take
     inside = [d["effect"] for d in described if d["role"] == "main" and not d["coordinates"]]
     truth: Truth = {
         "kind": request.kind, "plan": stage.plan.name, "seed": request.seed, "effects": inside, "hidden": described,
-        "over_floor": excess, "size": size(excess, tuple(inside)), "rig": stage.rig.as_truth(),
+        "over_floor": excess, "size": size(excess, tuple(inside), stage.plan.channels), "rig": stage.rig.as_truth(),
         "noise": asdict(stage.noise), "floor": floor, "resonance_hz": stage.rig.resonance_hz(),
     }  # fmt: skip
     return Case(stage, runs, truth)

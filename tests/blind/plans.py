@@ -55,9 +55,11 @@ def lock(degrees: int, repeat: str) -> RunPlan:
     return RunPlan(f"lock_{degrees}_{repeat}", "stiffness_lock", 50.0, SLOW_DT, 0.0, amplitude=amplitude, locked=True)
 
 
-def steady(rpm: int, repeat: str) -> RunPlan:
-    sign = "minus" if rpm < 0 else ""
-    return RunPlan(f"speed_{sign}{abs(rpm)}rpm_{repeat}", "constant_torque", 10.0, FAST_DT, 4.0, speed_rpm=float(rpm))
+def steady(rpm: int, repeat: str, torque: float = 0.0) -> RunPlan:
+    """A speed held by a constant torque, under a weight of `torque` N·m at the load."""
+    under = f"load_{torque:g}nm_" if torque else ""
+    name = f"{under}speed_{'minus' if rpm < 0 else ''}{abs(rpm)}rpm_{repeat}"
+    return RunPlan(name, "constant_torque", 10.0, FAST_DT, 4.0, tau_ext=-torque, speed_rpm=float(rpm))
 
 
 def stairs(speeds_rpm: tuple[float, ...], repeat: str) -> RunPlan:
@@ -139,6 +141,28 @@ def no_torque_sensor() -> Plan:
     return replace(complete(), name="no_torque_sensor", channels=("theta_m", "theta_l", "tau_m"))
 
 
+def no_motor_torque() -> Plan:
+    """The drive does not say its torque."""
+    return replace(complete(), name="no_motor_torque", channels=("theta_m", "theta_l", "tau_l"))
+
+
+def slow_and_locks() -> Plan:
+    """Never faster than the paper's slow speed."""
+    runs = [run for run in full_list() if run.procedure in ("kinematic_error", "stiffness_lock")]
+    return Plan("slow_and_locks", started(runs, 18.0))
+
+
+def weights_at_one_speed() -> Plan:
+    """120 rpm both ways under each weight, and a lock test."""
+    runs = [steady(rpm, k, torque) for torque in (0.0, 5.0, 10.0, 20.0, 40.0) for rpm in (120, -120) for k in BOTH]
+    return Plan("weights_at_one_speed", started([STANDSTILL, *runs, *(lock(60, k) for k in BOTH)], 18.0))
+
+
+def speeds_alone() -> Plan:
+    """Steady speeds both ways and nothing else."""
+    return Plan("speeds_alone", started([run for run in full_list() if run.procedure == "constant_torque"], 18.0))
+
+
 PLANS = {
     "complete": complete,
     "paper": paper,
@@ -148,4 +172,8 @@ PLANS = {
     "noreps": noreps,
     "one_direction": one_direction,
     "no_torque_sensor": no_torque_sensor,
+    "no_motor_torque": no_motor_torque,
+    "slow_and_locks": slow_and_locks,
+    "weights_at_one_speed": weights_at_one_speed,
+    "speeds_alone": speeds_alone,
 }

@@ -76,15 +76,19 @@ def turning(run: Taken) -> np.ndarray:
     return np.convolve(still, np.ones(2 * round(AROUND / run.plan.dt) + 1), "same") > 0.5
 
 
-def size(excess: Excess, effects: tuple[str, ...]) -> float:
-    """The figure a case is drawn by: the most affected channel over its floor; presliding lives at the reversals."""
-    channels = ["theta_l", "tau_l", "tau_m"] + ["reversal"] * ("presliding_friction" in effects)
-    return max(excess[name] for name in channels)
+def size(excess: Excess, effects: tuple[str, ...], logged: tuple[str, ...]) -> float:
+    """The figure a case is drawn by: the most affected channel that is `logged`, over its floor; presliding lives at
+    the reversals, which take both torques to see.
+    """
+    channels = [name for name in ("theta_l", "tau_l", "tau_m") if name in logged]
+    turns = "presliding_friction" in effects and {"tau_l", "tau_m"} <= set(logged)
+    return max(excess[name] for name in channels + ["reversal"] * turns)
 
 
 BRIEF = (
     "slow_ke", "load_5nm", "load_40nm_1", "speed_60rpm_1", "speed_200rpm_1", "speed_400rpm_1", "speed_minus200rpm_1",
-    "speed_120rpm", "speed_300rpm_1", "speed_500rpm_1", "lock_60_1",
+    "speed_120rpm", "speed_300rpm_1", "speed_500rpm_1", "lock_60_1", "load_5nm_speed_120rpm_1",
+    "load_40nm_speed_120rpm_1", "load_40nm_speed_minus120rpm_1",
 )  # fmt: skip
 
 
@@ -114,7 +118,7 @@ def excess_of(stage: Stage, form: Form, place: int, strength: float, clean: list
     builder = Builder(stage.rig)
     form.build(builder, shape_rng(stage.seed, place), strength)
     runs = simulate(builder, short(stage.plan), stage.noise, stage.seed)
-    return float(np.sqrt(max(size(over_floor(runs, clean), (form.effect,)) ** 2 - 1, 1e-4)))
+    return float(np.sqrt(max(size(over_floor(runs, clean), (form.effect,), stage.plan.channels) ** 2 - 1, 1e-4)))
 
 
 def secant(excess_at: Callable[[float], float], target: float, low: float, high: float) -> tuple[float, float]:
