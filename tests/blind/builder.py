@@ -27,7 +27,7 @@ LOAD = np.arange(LOAD_SIZE) * LOAD_STEP
 DEFLECTION = (np.arange(DEFLECTION_SIZE) - DEFLECTION_SIZE // 2) * DEFLECTION_STEP
 ONE_TURN = (
     "p", "p_load", "p_frame", "p_out", "friction_angle", "friction_frame",
-    "stiff_m", "stiff_l", "cogging", "ripple", "on_load", "encoder_m",
+    "stiff_m", "stiff_l", "cogging", "ripple", "on_load", "encoder_m", "pulley",
 )  # fmt: skip
 PLAIN = (
     "ke_gain", "friction_forward", "friction_backward", "friction_load", "spring",
@@ -75,9 +75,12 @@ class Builder:
             "slip_back": 1.0, "t_slow": 0.03,
             "back_driven": 1.0, "heat_gain": 0.0, "heat_tau": 900.0, "warm_c": 0.0, "warm_v": 0.0,
             "warm_tau_1": 600.0, "warm_tau_2": 600.0, "warm_share": 1.0, "aging": 0.0, "aging_tau": 1800.0,
-            "ke_aging": 0.0, "lag_angle": 0.0, "lag_scale": 0.05, "dead_zone": 0.0, "locked": int(locked),
+            "ke_aging": 0.0, "lag_angle": 0.0, "lag_scale": 0.05, "dead_zone": 0.0, "odd_order": 0.0, "odd_size": 0.0,
+            "odd_phase": 0.0, "warm_root": 0, "locked": int(locked),
         }  # fmt: skip
-        integers = {name: int(self.scalars.get(name, values[name])) for name in ("extra", "friction", "hysteresis")}
+        integers = {
+            name: int(self.scalars.get(name, values[name])) for name in ("extra", "friction", "hysteresis", "warm_root")
+        }
         return Par(**{**values, **self.scalars, **integers})
 
     def pure_error(self) -> np.ndarray:

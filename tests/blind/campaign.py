@@ -113,7 +113,8 @@ def simulate_run(plan: RunPlan, machine: Machine, seeds: list[int]) -> Taken:
     """One run, from before its first row; the machine's memory is changed."""
     n = round((plan.lead_s + plan.duration_s) / TICK) + 1
     noise_rng, chance, sensor_rng = (np.random.default_rng([*seeds, k]) for k in (1, 2, 3))
-    builder, par = machine.builder, machine.builder.par(plan.locked)
+    builder = machine.builder
+    par = builder.par(plan.locked)._replace(odd_phase=1.7 * plan.start_s)
     at_rest(machine.state, plan, par, float(machine.data[machine.tab.p]))
     steps = builder.sensors.motor_steps
     offset = np.zeros(n) if steps is None else steps(plan.name, n, chance)

@@ -118,7 +118,7 @@ def step(s, par, tab, data, tau, on_load, noise_m, noise_l, scale_c, scale_v, ag
     on_a, on_b = mesh * (1.0 / par.N - p_a) + couple_a, -mesh * (1.0 + p_b) + couple_b
     f_m, f_l, f_x = shares(par, on_a, on_b, shaft)
     tau = tau * (1.0 + periodic(data, tab.ripple, s[TH])[0]) + periodic(data, tab.cogging, s[TH])[0]
-    on_load += periodic(data, tab.on_load, s[TL])[0]
+    on_load = on_load * (1.0 + periodic(data, tab.pulley, s[TL])[0]) + periodic(data, tab.on_load, s[TL])[0]
     rel = par.B_ml * (s[W] + s[WL])
     drag_m, drag_l = par.B_m * scale_v * s[W] + rel, par.B_l * s[WL] + rel
     level = friction_level(s, par, tab, data, noise_m, scale_c)
@@ -144,6 +144,8 @@ def step(s, par, tab, data, tau, on_load, noise_m, noise_l, scale_c, scale_v, ag
 def warmth(s, par, t):
     """Factors of dry and viscous friction at campaign time t: warm-up by the clock, and heat made by rubbing."""
     fade = par.warm_share * np.exp(-t / par.warm_tau_1) + (1.0 - par.warm_share) * np.exp(-t / par.warm_tau_2)
+    if par.warm_root:
+        fade = 1.0 / np.sqrt(1.0 + t / par.warm_tau_1)
     heated = np.exp(-par.heat_gain * s[HEAT])
     return (1.0 + par.warm_c * fade) * heated, (1.0 + par.warm_v * fade) * heated
 

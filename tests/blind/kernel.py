@@ -79,6 +79,10 @@ class Par(NamedTuple):
     lag_angle: float
     lag_scale: float
     dead_zone: float
+    odd_order: float
+    odd_size: float
+    odd_phase: float
+    warm_root: int
     locked: int
 
 
@@ -99,6 +103,7 @@ class Tab(NamedTuple):
     ripple: int
     on_load: int
     encoder_m: int
+    pulley: int
     ke_gain: int
     friction_forward: int
     friction_backward: int
@@ -154,6 +159,9 @@ def kinematic_error(s, par, tab, data, a, b, aged):
         p, p_a = p + g * q, p_a + g * dq
     f, df = periodic(data, tab.p_frame, a + b)
     o, do = periodic(data, tab.p_out, b)
+    if par.odd_size > 0.0:
+        turn = par.odd_order * a + par.odd_phase
+        p, p_a = p + par.odd_size * np.sin(turn), p_a + par.odd_size * par.odd_order * np.cos(turn)
     return p + f + o, p_a + df, df + do
 
 

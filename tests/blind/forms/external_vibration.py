@@ -1,4 +1,5 @@
-"""Fixed frequency whatever the speed [physics E7]: sine on the load (textbook), two lines that swell, shaken head."""
+"""Fixed frequency whatever the speed [physics E7]: sine on the load (textbook), two lines that swell, shaken head,
+one that starts and stops."""
 
 from __future__ import annotations
 
@@ -38,8 +39,21 @@ def shaken_head(builder: Builder, rng: np.random.Generator, strength: float) -> 
     return {"frequency_hz": hz, "amplitude_rad": size}
 
 
+def starts_and_stops(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    """A compressor that runs for a minute or two, then rests as long."""
+    hz, size, turn = pick(rng, 6.0, 40.0), pick(rng, 0.2, 0.6) * strength, pick(rng, 100.0, 300.0)
+
+    def wave(t: np.ndarray) -> np.ndarray:
+        runs = 0.5 + 0.5 * np.tanh(20 * np.sin(2 * np.pi * t / turn))
+        return size * runs * np.sin(2 * np.pi * hz * t)
+
+    builder.load_waves.append(wave)
+    return {"frequency_hz": hz, "torque_Nm": size, "turn_s": turn}
+
+
 FORMS = (
     Form("external_vibration", "sine", sine, textbook=True),
     Form("external_vibration", "two_lines", two_lines),
     Form("external_vibration", "shaken_head", shaken_head),
+    Form("external_vibration", "starts_and_stops", starts_and_stops),
 )

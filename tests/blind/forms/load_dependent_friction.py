@@ -1,4 +1,5 @@
-"""Mesh friction that grows with the torque [physics A2]: linear (textbook), by power flow, saturating with load."""
+"""Mesh friction that grows with the torque [physics A2]: linear (textbook), by power flow, saturating with load,
+past a threshold."""
 
 from __future__ import annotations
 
@@ -32,9 +33,16 @@ def power_1p2(builder: Builder, rng: np.random.Generator, strength: float) -> Pa
     return {"mu_at_20Nm": mu}
 
 
+def threshold(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    mu, past = pick(rng, 0.06, 0.14) * strength, pick(rng, 3.0, 9.0)
+    builder.add("friction_load", mu * np.maximum(LOAD - past, 0.0) / builder.rig.N)
+    return {"mu": mu, "past_Nm": past}
+
+
 FORMS = (
     Form("load_dependent_friction", "linear", linear, textbook=True),
     Form("load_dependent_friction", "power_flow", power_flow),
     Form("load_dependent_friction", "saturating", saturating),
     Form("load_dependent_friction", "power_1p2", power_1p2),
+    Form("load_dependent_friction", "threshold", threshold),
 )

@@ -1,4 +1,4 @@
-"""Kinematic error that shrinks with load [physics C1]: exponential (textbook), rational, unequal orders."""
+"""Kinematic error that shrinks with load [physics C1]: exponential (textbook), rational, unequal orders, straight."""
 
 from __future__ import annotations
 
@@ -35,8 +35,16 @@ def unequal_orders(builder: Builder, rng: np.random.Generator, strength: float) 
     return {"A_inf_order_2": 1 - lost, "torque_scale_Nm": torque}
 
 
+def straight(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    lost, torque = min(pick(rng, 0.3, 0.5) * strength, 0.9), pick(rng, 4.0, 12.0)
+    builder.add("p_load", builder.pure_error())
+    builder.add("ke_gain", -lost * np.minimum(LOAD / torque, 1.0))
+    return {"A_inf": 1 - lost, "flat_from_Nm": torque}
+
+
 FORMS = (
     Form("load_dependent_kinematic_error", "exponential", exponential, textbook=True, strongest=1.9),
     Form("load_dependent_kinematic_error", "rational", rational, strongest=1.9),
     Form("load_dependent_kinematic_error", "unequal_orders", unequal_orders, strongest=1.9),
+    Form("load_dependent_kinematic_error", "straight", straight, strongest=1.9),
 )

@@ -1,4 +1,5 @@
-"""Dead zone at zero torque [physics B3]: sharp (textbook), rounded, and one whose two sides differ."""
+"""Dead zone at zero torque [physics B3]: sharp (textbook), rounded, and one whose two sides differ,
+one that is soft."""
 
 from __future__ import annotations
 
@@ -35,8 +36,16 @@ def uneven(builder: Builder, rng: np.random.Generator, strength: float) -> Param
     return {"gap_left_rad": left, "gap_right_rad": right}
 
 
+def soft_gap(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    """A third of the stiffness within the gap, and a smooth way out of it."""
+    gap, stays = pick(rng, 3e-5, 7e-5) * strength, pick(rng, 0.25, 0.4)
+    builder.add("spring", -(1 - stays) * builder.rig.K * gap * np.tanh(DEFLECTION / gap))
+    return {"half_gap_rad": gap, "stiffness_share": stays}
+
+
 FORMS = (
     Form("lost_motion", "sharp", sharp, textbook=True, strongest=6.0),
     Form("lost_motion", "rounded", rounded, strongest=6.0),
     Form("lost_motion", "uneven", uneven, strongest=6.0),
+    Form("lost_motion", "soft_gap", soft_gap, strongest=6.0),
 )

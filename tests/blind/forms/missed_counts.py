@@ -1,4 +1,4 @@
-"""A permanent step in one encoder [physics D8]: load encoder (textbook), a random walk, motor encoder."""
+"""A permanent step in one encoder [physics D8]: load encoder (textbook), a random walk, motor encoder, at speed."""
 
 from __future__ import annotations
 
@@ -60,8 +60,22 @@ def motor_steps(builder: Builder, rng: np.random.Generator, strength: float) -> 
     return {"counts": counts, "count_rad": MOTOR_COUNT}
 
 
+def at_speed(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    """The counter of the load falls behind while the disc turns fast, in groups, several times a run."""
+    counts, past = -max(round(pick(rng, 4, 12) * strength), 1), pick(rng, 0.3, 0.5)
+
+    def read(columns: Columns, where: Context) -> None:
+        speed = abs(columns["theta_l"][-1] - columns["theta_l"][0]) / columns["t"][-1]
+        if speed > past:
+            columns["theta_l"] += stairs(where.rng, len(columns["t"]), where.rng.integers(1, 5), counts) * LOAD_COUNT
+
+    builder.sensors.changes.append(read)
+    return {"counts": counts, "past_rad_s": past}
+
+
 FORMS = (
     Form("missed_counts", "load_steps", load_steps, textbook=True, weakest=0.2, strongest=12.0),
     Form("missed_counts", "random_walk", random_walk, weakest=0.2, strongest=8.0),
     Form("missed_counts", "motor_steps", motor_steps, weakest=0.2, strongest=12.0),
+    Form("missed_counts", "at_speed", at_speed, weakest=0.2, strongest=12.0),
 )

@@ -30,8 +30,17 @@ def tight_spots(builder: Builder, rng: np.random.Generator, strength: float) -> 
     return {"share_peak": share, "sharpness": sharp}
 
 
+def with_flexspline(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    """Half of it goes round with the flexspline: order 2.04 beside order 2."""
+    share, psi, phi = pick(rng, 0.06, 0.14) * strength, phase(rng), phase(rng)
+    builder.add("friction_angle", share * np.cos(2 * ANGLE - psi))
+    builder.add("friction_frame", 0.5 * share * np.cos(2 * ANGLE - phi))
+    return {"share_2": share, "share_2p04": 0.5 * share}
+
+
 FORMS = (
     Form("position_dependent_friction", "order_two", order_two, textbook=True),
     Form("position_dependent_friction", "orders", orders),
     Form("position_dependent_friction", "tight_spots", tight_spots),
+    Form("position_dependent_friction", "with_flexspline", with_flexspline),
 )

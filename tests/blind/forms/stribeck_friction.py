@@ -1,4 +1,4 @@
-"""Friction that falls with speed near rest [physics A1]: Gaussian (textbook), exponential and Lorentzian decay."""
+"""Friction that falls with speed near rest [physics A1]: Gaussian (textbook), exponential, Lorentzian, straight."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ DECAY = {
     "gaussian": lambda x: np.exp(-(x**2)),
     "exponential": lambda x: np.exp(-x),
     "lorentzian": lambda x: 1 / (1 + x**2),
+    "ramp": lambda x: np.maximum(1 - 0.6 * x, 0),
 }
 
 

@@ -1,4 +1,5 @@
-"""Friction that falls as the drive warms [physics A5]: one constant (textbook), two, heated by its losses."""
+"""Friction that falls as the drive warms [physics A5]: one constant (textbook), two, heated by its losses,
+by a root of time."""
 
 from __future__ import annotations
 
@@ -30,8 +31,17 @@ def self_heating(builder: Builder, rng: np.random.Generator, strength: float) ->
     return {"fall_per_joule": gain, "leak_s": tau}
 
 
+def root_of_time(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    """Falls like one over a root: fast at first, and never done."""
+    tau, viscous = pick(rng, 60.0, 200.0), min(pick(rng, 0.3, 0.6) * strength, 2.0)
+    dry = pick(rng, 0.2, 0.8) * viscous
+    builder.set(warm_v=viscous, warm_c=dry, warm_tau_1=tau, warm_root=1)
+    return {"viscous_share": viscous, "dry_share": dry, "tau_s": tau}
+
+
 FORMS = (
     Form("thermal_friction_drift", "one_constant", one_constant, textbook=True),
     Form("thermal_friction_drift", "two_constants", two_constants),
     Form("thermal_friction_drift", "self_heating", self_heating),
+    Form("thermal_friction_drift", "root_of_time", root_of_time),
 )

@@ -28,6 +28,7 @@ PADDED = 4  # finer than a window's own resolution
 LEAP = 0.1  # relative: half a window on, a line that wanders by a fifth in a minute has gone a hundredth
 AROUND = 3.0  # times a frequency, and a third of it: its neighbourhood
 FEWEST = 3  # windows of a run, each half over the next
+WANDERS = 1.1  # highest over lowest within every run, and the most of its speed's: a resonance is narrower
 STEADY = 1.02  # highest over lowest: a sixteenth of a hertz is how finely a window is read
 WHOLE_ORDERS = 0.7  # of the runs in which a line that wanders is a whole order of the motor: chance makes a tenth
 WHOLE_BY = 0.05  # of a turn: as near to one as a window reads a frequency at 75 rpm
@@ -68,6 +69,13 @@ class _Track:
     height: Array
 
     @property
+    def wander(self) -> float:
+        """Highest over lowest frequency, but for a tenth of the windows at each end: no order of a shaft that turns
+        evenly has any, and no resonance much of it."""
+        low, high = np.quantile(self.hz[self.height > LINE], [0.1, 0.9])
+        return float(high / low)
+
+    @property
     def leaps(self) -> float:
         """How far it usually is from one window to the next, relative: noise of a broad hump has its top anywhere."""
         return float(np.median(np.abs(np.diff(np.log(self.hz[self.height > LINE])))))
@@ -99,10 +107,12 @@ def _in_channel(
     hz = np.array([np.median(t.hz[t.height > LINE]) for t in hits.values()])
     speed = np.array([eq.runs[i].turning for i, _ in hits])
     apart = float(hz.max() / hz.min())
-    if apart > LINE_WIDE or speed.max() < LINE_FREE * apart * speed.min():
+    travels = all(t.wander > WANDERS and eq.runs[i].keeps_speed(WANDERS) for (i, _), t in hits.items())
+    if apart > LINE_WIDE or not (travels or speed.max() >= LINE_FREE * apart * speed.min()):
         return None
     usual = float(np.median(hz))
-    if apart > STEADY and (_are_orders(hz, speed) or abs(np.log(usual / _resonance(eq))) < np.log(RINGING)):
+    as_gear = _are_orders(hz, speed) or abs(np.log(usual / _resonance(eq))) < np.log(RINGING)
+    if apart > STEADY and as_gear and not travels:
         return None
     lines = {k: _line(eq, k, r, usual) for k, r in {**e, **unseen}.items() if k[1] == channel}
     loud = [(float(lines[k] @ lines[k]), float(e[k] @ e[k])) for k in keys]
