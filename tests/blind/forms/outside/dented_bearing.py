@@ -1,4 +1,4 @@
-"""Outside the library: a dent in the bearing of the output: a torque at one angle, with the weight that presses on it."""
+"""Outside the library: a dent in the bearing of the output, a torque at one angle, by the weight that presses."""
 
 from __future__ import annotations
 
