@@ -1,5 +1,4 @@
-"""Spring that is not straight [physics B1]: cubic (textbook), three lines K1 < K2 < K3, soft wind-up by tanh,
-one side stiffer."""
+"""Spring that is not straight [physics B1]: cubic (textbook), three lines K1 < K2 < K3, soft wind-up by tanh."""
 
 from __future__ import annotations
 
@@ -33,16 +32,8 @@ def soft_start(builder: Builder, rng: np.random.Generator, strength: float) -> P
     return {"missing_share_at_zero": missing, "width_rad": width}
 
 
-def one_sided(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
-    more, past = pick(rng, 0.04, 0.12) * strength, pick(rng, 0.0003, 0.001)
-    over = past * np.logaddexp(0, DEFLECTION / past) - past * np.log(2)
-    builder.add("spring", more * builder.rig.K * (over - 0.5 * DEFLECTION))
-    return {"share": more, "bend_rad": past}
-
-
 FORMS = (
     Form("nonlinear_stiffness", "cubic", cubic, textbook=True),
     Form("nonlinear_stiffness", "three_lines", three_lines),
     Form("nonlinear_stiffness", "soft_start", soft_start, strongest=2.4),
-    Form("nonlinear_stiffness", "one_sided", one_sided),
 )

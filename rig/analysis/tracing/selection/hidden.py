@@ -23,6 +23,7 @@ from rig.analysis.tracing.residual.joined import Rest
 from rig.analysis.tracing.residual.levels import friction_by_speed, of_turning
 from rig.analysis.tracing.residual.locks import lock_tests_differ
 from rig.analysis.tracing.residual.same_spring import same_spring
+from rig.analysis.tracing.residual.slipping_order import slipping_order
 from rig.analysis.tracing.residual.strikes import striking
 from rig.analysis.tracing.residual.ticking import largest, ticking
 from rig.analysis.tracing.residual.unknown import home
@@ -65,6 +66,7 @@ def _in_the_floor(
         if home is None:
             here = ticking(p.eq, left, after, [last])
             home = largest([ticks(), here]) or hidden_order(p.eq, left, after, floors)
+            home = home or slipping_order(p.eq, left, floors)
             of_what = "what unseen runs leave there"
     if home is None:
         return None

@@ -13,6 +13,7 @@ from rig.analysis.tracing.residual.hidden_order import hidden_order
 from rig.analysis.tracing.residual.home import WHERE_IT_TURNS_BACK, Home
 from rig.analysis.tracing.residual.in_the_floor import as_runs_begin, in_the_floor
 from rig.analysis.tracing.residual.joined import loudness
+from rig.analysis.tracing.residual.slipping_order import slipping_order
 from rig.analysis.tracing.residual.unknown import home
 from rig.analysis.tracing.thresholds import LITTLE, QUIET
 from rig.model.effect import Array
@@ -36,6 +37,8 @@ def where_left(
             where = _in_the_floor_too(p, where, left, after, {**floors, **p.held_out.floors})
             if line is None and (found := along_another(p, s, where[0])):
                 where = [found, *where]
+        elif lives and where[0].share < HALF and (order := slipping_order(p.eq, left, seen)):
+            where = [order, *where]
     if line is not None:
         where = [Home("time_periodic", line.channel, line.share, frequency_hz=line.frequency_hz), *where]
     return where
@@ -68,6 +71,6 @@ def _in_the_floor_too(
             return where
         return [wave, *where]
     if where[0].share < HALF:
-        order = hidden_order(p.eq, left, after, floors)
+        order = hidden_order(p.eq, left, after, floors) or slipping_order(p.eq, left, floors)
         return [order, *where] if order is not None and order.share > where[0].share else where
     return where
