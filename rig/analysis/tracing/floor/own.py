@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+import numpy as np
+
 from rig.analysis.tracing.fit.equations import Equations, Key, Term
 from rig.analysis.tracing.fit.model import Solution, design
 from rig.analysis.tracing.floor.between_runs import find_between
@@ -34,7 +36,7 @@ from rig.analysis.tracing.runs.holdout import HELD_PART, Split
 from rig.analysis.tracing.thresholds import OWN
 from rig.model.effect import Array, Parameter
 
-PLAINLY: Final = 1.2  # times the sum of squares
+HALF: Final = 0.5  # of the sum of squares that runs with steps leave
 
 
 @dataclass(frozen=True)
@@ -123,11 +125,14 @@ def _stepping(
 
 
 def _that_takes_more(everywhere: Mapping[Key, Array], many: Own | None, few: Own | None) -> Own | None:
-    """Stairs where they take plainly more of A than the steps that stand out one by one, which have fewer numbers."""
+    """Stairs where they leave half of what the steps that stand out one by one do, which have fewer numbers."""
     if many is None or few is None:
         return many or few
-    taken = [sum(square_taken(everywhere, own.made.get(LOST.name, {})).values()) for own in (many, few)]
-    return many if taken[0] > PLAINLY * taken[1] else few
+    made = [own.made.get(LOST.name, {}) for own in (many, few)]
+    angles = [everywhere[key] for key in {*made[0], *made[1]} if key[1] == "A"]
+    all_of_it = sum(float(np.sum((e - e.mean()) ** 2)) for e in angles)
+    left = [all_of_it - sum(square_taken(everywhere, columns).values()) for columns in made]
+    return many if left[0] < HALF * left[1] else few
 
 
 def _with(own: Own, name: str, columns: dict[Key, Array], words: tuple[Parameter, ...], note: str = "") -> Own:

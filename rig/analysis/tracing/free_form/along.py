@@ -27,11 +27,13 @@ ALONE: Final = 20  # orders of an angle by itself, the same
 
 
 class Along(NamedTuple):
-    """A factor, what it runs along in words, and whether it is a surface over two coordinates."""
+    """A factor, what it runs along in words, whether it is a surface over two coordinates, and whether it is what the
+    torque has been: a torque on the load is in that reading, and would be told by itself."""
 
     factor: Factor
     words: str
     surface: bool = False
+    of_the_torque: bool = False
 
 
 class Hatted(NamedTuple):
@@ -56,6 +58,8 @@ HATTED: Final[Mapping[str, Hatted]] = {
 }
 BY_THE_CLOCK: Final = f"a curve along {HATTED['time'].words}"
 """A form's last words, where it runs along the campaign's own time."""
+BY_THE_OUTPUT: Final = f"a curve along {HATTED['load_angle'].words}"
+"""The same where it runs along the output's angle."""
 OVER: Final = ("speed", "load", "time")
 """What a surface may be over, beside the coordinate."""
 
@@ -74,7 +78,7 @@ def along(coordinate: str, seen: Ranges, finer: int) -> Iterator[Along]:
             yield Along(remembering(turned, finer, False), back)
             yield Along(remembering(turned, finer, True), f"{back} or began")
             yield Along(remembering(turned_each_way, finer), f"{back}, another each way")
-            yield Along(remembering(past_torque), "what the torque has been")
+            yield Along(remembering(past_torque), "what the torque has been", of_the_torque=True)
         case "direction":
             yield Along(lambda s: s.way[:, None], "the direction")
     if hatted := HATTED.get(coordinate):

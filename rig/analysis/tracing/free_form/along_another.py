@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from rig.analysis.tracing.fit.model import Solution
-from rig.analysis.tracing.free_form.along import BY_THE_CLOCK
+from rig.analysis.tracing.free_form.along import BY_THE_CLOCK, BY_THE_OUTPUT
 from rig.analysis.tracing.free_form.fitted import Fitted, fitted, likeliest, of_some_rows, possible
 from rig.analysis.tracing.free_form.form import FreeForm
 from rig.analysis.tracing.prepared import Prepared
@@ -23,6 +23,7 @@ from rig.analysis.tracing.thresholds import EVIDENCE, FAR_LESS, PLAIN_ENOUGH
 from rig.process.workers import each
 
 PLAIN: Final = ("motor_angle", "load_angle", "speed", "load", "direction")
+SHARP: Final = 4  # times as fine as usual: a dent in a race is two degrees wide
 LIKELY: Final = 3  # forms along a coordinate that few rows speak for most
 ANYTHING: Final = ("time", "temperature", "memory")  # of many numbers, along which runs differ anyhow
 
@@ -61,6 +62,7 @@ def along_another(p: Prepared, s: Solution, said: Home) -> Home | None:
 def _best_along_each(p: Prepared, s: Solution) -> dict[str, tuple[FreeForm, float]]:
     """Of the curves along each coordinate that few rows speak for most the one that all rows do, and how much."""
     along = {form: name for name in (*PLAIN, *ANYTHING) for form in possible(p, name) if not form.surface}
+    along |= {form: "load_angle" for form in possible(p, "load_angle", SHARP) if form.words.endswith(BY_THE_OUTPUT)}
     ranked = likeliest(p, s, list(along), len(along))
     first = [form for name in (*PLAIN, *ANYTHING) for form in [f for f in ranked if along[f] == name][:LIKELY]]
     evidence = each(lambda form: fitted(p, s, form).evidence, first)

@@ -87,12 +87,18 @@ def forms(coordinate: str, seen: Ranges, finer: int) -> list[FreeForm]:
     """Of that coordinate, `finer` times as fine as the coarsest; none of one that no form is drawn along."""
     made = [*_angles(coordinate, finer)]
     for way in along(coordinate, seen, finer):
-        made += [_form(at, way) for at in PLACES]
+        made += [_form(at, way) for at in PLACES if not _by_itself(at, way)]
         if not way.surface and coordinate != "load_angle":
-            made += [_waves_of_the_output(at, way, PRODUCT * finer) for at in (FRICTION, ANGLE)]
+            waved = (FRICTION, ANGLE)
+            made += [_waves_of_the_output(at, way, PRODUCT * finer) for at in waved if not _by_itself(at, way)]
         if not way.surface and coordinate not in ("motor_angle", "load_angle"):
             made += _waves_of_the_motor(way, PRODUCT * finer)
     return made
+
+
+def _by_itself(at: At, way: Along) -> bool:
+    """Whether what acts there would be told by its own reading."""
+    return way.of_the_torque and at.port is Port.LOAD_TORQUE
 
 
 def _form(at: At, way: Along) -> FreeForm:

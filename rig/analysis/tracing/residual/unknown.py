@@ -15,7 +15,7 @@ from rig.analysis.tracing.residual.coordinates import FINE, INDICES, JOINT, LATE
 from rig.analysis.tracing.residual.home import Home, plainest
 from rig.analysis.tracing.residual.joined import Rest, loudness, rest
 from rig.analysis.tracing.residual.lines import BY_THE_CLOCK, SENSES, best_order, by_the_clock, by_the_day, line
-from rig.analysis.tracing.residual.own_phases import own_phases
+from rig.analysis.tracing.residual.own_phases import line_for_a_while, own_phases
 from rig.analysis.tracing.residual.readings import accelerating, drifting, in_bins, in_columns, powers, share, swelling
 from rig.analysis.tracing.residual.settling import settled
 from rig.analysis.tracing.residual.sudden import since, turned_since
@@ -125,7 +125,7 @@ def _frequencies(h: Halves, seen: Home | None, channel: str) -> list[Home]:
     senses = (*SENSES, _drive) if channel == "M" else SENSES
     slow = [by_the_day(h, channel, sense) for sense in senses]
     beating = [by_the_clock(h, channel, sense, among) for sense, among in BY_THE_CLOCK]
-    return [home for home in (seen, *slow, *beating) if home is not None]
+    return [home for home in (seen, *slow, *beating, line_for_a_while(h, channel)) if home is not None]
 
 
 def _drive(r: Rest) -> Array:

@@ -10,7 +10,8 @@ from tests.blind.sensors import Columns, Context
 
 
 def shifted(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
-    shift = pick(rng, 0.001, 0.004) * strength
+    """Against the way a soft coupling would give, which it could not be told from."""
+    shift = -pick(rng, 0.001, 0.004) * strength
 
     def read(columns: Columns, where: Context) -> None:
         columns["theta_m"] += shift * columns["tau_m"]
