@@ -90,7 +90,7 @@ def test_a_spring_harder_one_way_is_what_a_stiffness_of_an_angle_seems_in_a_lock
     torque = np.linspace(-5.0, 5.0, 4000)
     held = replace(motion(n=4000), torque=torque, theta_m=N * torque / KNOWN.K)
     of_angle = AngleDependentStiffness().columns(held, (1.0, 0.0, MOTOR))[Port.WIND_UP][:, 1]
-    even = EvenSpring().columns(held, ())[Port.WIND_UP][:, 0]
+    even = 2 * EvenSpring.SQUARE * EvenSpring().columns(held, (EvenSpring.SQUARE,))[Port.WIND_UP][:, 0]
     np.testing.assert_allclose(of_angle, -N / KNOWN.K * even, atol=1e-3 * np.abs(of_angle).max())
 
 
