@@ -57,7 +57,7 @@ def test_what_acts_on_a_load_whose_torque_nobody_read_winds_up_a_spring_with_its
 def test_creep_follows_a_step_of_torque_as_slowly_as_its_lags() -> None:
     still = motion(n=4000)
     step = np.where(np.arange(4000) < 10, 0.0, 20.0)
-    (columns,) = Creep().columns(replace(still, torque=step), ()).values()
+    (columns,) = Creep().columns(replace(still, torque=step), (Creep.IN_BALANCE,)).values()
     gone = (4000 - 10) * still.dt
     expected = 20.0 * (1 - np.exp(-gone / np.array(Creep.LAGS)))
     np.testing.assert_allclose(columns[-1], expected, rtol=2e-2)
@@ -68,14 +68,14 @@ def test_creep_closes_its_loop_when_it_is_gone_round_slowly() -> None:
     def gap(seconds: float) -> float:
         n = 20000
         s = replace(motion(n=n), dt=seconds / n, torque=20.0 * np.sin(np.linspace(0, 2 * np.pi, n)))
-        column = Creep().columns(s, ())[Port.WIND_UP][:, 0]
+        column = Creep().columns(s, (Creep.IN_BALANCE,))[Port.WIND_UP][:, 0]
         return float(abs(column[n // 2]))  # back at zero torque
 
     assert gap(400.0) < 0.05 * gap(4.0)
 
 
 def test_a_campaign_shorter_than_its_lags_shows_no_creep() -> None:
-    assert Creep().shapes(REACH) == ((),)
+    assert Creep().shapes(replace(REACH, weights=1)) == ((Creep.IN_BALANCE,),)
     assert Creep().shapes(replace(REACH, duration=8.0)) == ()
 
 
@@ -90,7 +90,7 @@ def test_a_spring_harder_one_way_is_what_a_stiffness_of_an_angle_seems_in_a_lock
     torque = np.linspace(-5.0, 5.0, 4000)
     held = replace(motion(n=4000), torque=torque, theta_m=N * torque / KNOWN.K)
     of_angle = AngleDependentStiffness().columns(held, (1.0, 0.0, MOTOR))[Port.WIND_UP][:, 1]
-    even = 2 * EvenSpring.SQUARE * EvenSpring().columns(held, (EvenSpring.SQUARE,))[Port.WIND_UP][:, 0]
+    even = EvenSpring().columns(held, ())[Port.WIND_UP][:, 0]
     np.testing.assert_allclose(of_angle, -N / KNOWN.K * even, atol=1e-3 * np.abs(of_angle).max())
 
 

@@ -25,7 +25,8 @@ TURNED: Final = 2e-5  # rad: gone through within a row of the slow run, so its s
 class Creep(Nameless):
     """A part of the wind-up that comes late: φ gains Σ c_i·(T through a first-order lag of T_i)      [findley1976]
 
-    A loop in torque against wind-up as hysteresis makes it, but one that closes when it is gone round slowly.
+    A loop in torque against wind-up as hysteresis makes it, but one that closes when it is gone round slowly. A load
+    that was hung up just before has not wound up all of it when a run begins: φ gains Σ d_i·T(0)·exp(−t/T_i) besides.
     """
 
     name: ClassVar[str] = "creep"
@@ -34,21 +35,30 @@ class Creep(Nameless):
     source: ClassVar[str] = "findley1976"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES | {"t"}
     remembers: ClassVar[bool] = True
+    shape_names: ClassVar[tuple[str, ...]] = ("begun",)
+    loose: ClassVar[tuple[bool, ...]] = (False,)
     LAGS: Final = (0.7, 1.5, 4.0, 8.0, 20.0, 50.0)  # s: from a turn of the motor to a run, 2 to 3 times apart
+    IN_BALANCE: ClassVar[float] = 0.0
+    JUST_HUNG: ClassVar[float] = 1.0
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """One; none in a campaign shorter than its lags, where they are powers of the time and foretell any drift."""
-        return ((),) if reach.duration > self.LAGS[-1] else ()
+        """Of runs that begin in balance, and where loads were hung up just before; none in a campaign shorter than its
+        lags, where they are powers of the time and foretell any drift."""
+        if reach.duration <= self.LAGS[-1]:
+            return ()
+        return ((self.IN_BALANCE,), (self.JUST_HUNG,)) if reach.weights > 1 else ((self.IN_BALANCE,),)
 
     def has_state(self) -> bool:
         """It comes late."""
         return True
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
-        """One follower a lag, in balance when the run begins."""
+        """One follower a lag, in balance when the run begins, and what fades since then."""
         torque = torque_of(signals)
         keep = np.exp(-signals.dt / np.array(self.LAGS))
         late = [torque[0] + follower(torque - torque[0], 1 - k, 0.0, k, 0.0) for k in keep]
+        if shape[0] == self.JUST_HUNG:
+            late += [torque[0] * k ** np.arange(torque.size) for k in keep]
         return {Port.WIND_UP: np.stack(late, 1)}
 
 

@@ -23,8 +23,7 @@ from rig.model.effect import Array, Fit, Port, Reach, Shape, Signals
 
 
 class EvenSpring(Nameless):
-    """A spring harder one way than the other: φ loses c·T_b·(√(1 + (T/T_b)²) − 1), bent about no torque within T_b, or
-    with the square of the torque where T_b is more than there is      [tuttle1992]
+    """A spring harder one way than the other: φ loses c·T²      [tuttle1992]
 
     In a lock test the motor's angle goes with the torque, and any stiffness that changes with that angle does the same.
     """
@@ -34,20 +33,14 @@ class EvenSpring(Nameless):
     in_short: ClassVar[str] = "the spring is harder one way than the other"
     source: ClassVar[str] = "tuttle1992"
     needs: ClassVar[frozenset[str]] = BOTH_ANGLES
-    shape_names: ClassVar[tuple[str, ...]] = ("T_b",)
-    loose: ClassVar[tuple[bool, ...]] = (False,)
-    BENT: ClassVar[tuple[float, ...]] = (1.0, 4.0, 15.0)  # N·m
-    SQUARE: ClassVar[float] = 1e3  # N·m
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Where torques pull both ways: of one way alone it may as well be harder the more it is wound up."""
-        bent = ((at,) for at in self.BENT if at < reach.torque)
-        return when(reach.pulled_both_ways, (self.SQUARE,), *bent)
+        """One, where torques pull both ways: of one way alone it may as well be harder the more it is wound up."""
+        return when(reach.pulled_both_ways)
 
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column."""
-        within = shape[0]
-        return {Port.WIND_UP: -(within * (np.hypot(1.0, torque_of(signals) / within) - 1.0))[:, None]}
+        return {Port.WIND_UP: -(torque_of(signals) ** 2)[:, None]}
 
 
 class SpringDrift(Nameless):

@@ -98,7 +98,7 @@ CONFOUNDERS: Final = {
     "even_spring": Confounder(
         EvenSpring(),
         "load",
-        "The gear winds up less one way than the other under the same torque; a stiffness that changes with "
+        "The gear winds up less one way than the other, with the square of the torque; a stiffness that changes with "
         "the angle explains no more, and no effect of the library is so.",
         mimics=frozenset({"angle_dependent_stiffness"}),
     ),
