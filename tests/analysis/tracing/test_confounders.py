@@ -64,6 +64,15 @@ def test_creep_follows_a_step_of_torque_as_slowly_as_its_lags() -> None:
     assert (columns[9] == 0).all()
 
 
+def test_a_load_that_was_just_hung_up_has_still_to_wind_up_the_gear() -> None:
+    """What fades from the start on makes, with what follows, the wind-up of a load that was just hung up."""
+    held = replace(motion(n=4000), torque=np.full(4000, 20.0))
+    (columns,) = Creep().columns(held, (Creep.JUST_HUNG,)).values()
+    follows, fades = np.hsplit(columns, 2)
+    gone = held.dt * np.arange(4000)[:, None] / np.array(Creep.LAGS)
+    np.testing.assert_allclose(follows - fades, 20.0 * (1 - np.exp(-gone)), atol=1e-9)
+
+
 def test_creep_closes_its_loop_when_it_is_gone_round_slowly() -> None:
     def gap(seconds: float) -> float:
         n = 20000
@@ -76,6 +85,7 @@ def test_creep_closes_its_loop_when_it_is_gone_round_slowly() -> None:
 
 def test_a_campaign_shorter_than_its_lags_shows_no_creep() -> None:
     assert Creep().shapes(replace(REACH, weights=1)) == ((Creep.IN_BALANCE,),)
+    assert (Creep.JUST_HUNG,) in Creep().shapes(replace(REACH, weights=3))
     assert Creep().shapes(replace(REACH, duration=8.0)) == ()
 
 

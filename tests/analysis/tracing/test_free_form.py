@@ -16,7 +16,7 @@ from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.free_form import along_another as another
 from rig.analysis.tracing.free_form import drawn as drawn_of
 from rig.analysis.tracing.free_form import fitted as fitted_of
-from rig.analysis.tracing.free_form.along import BY_THE_CLOCK
+from rig.analysis.tracing.free_form.along import BY_THE_CLOCK, BY_THE_OUTPUT
 from rig.analysis.tracing.free_form.factors import began, hats, motor_waves, past_torque, turned
 from rig.analysis.tracing.free_form.forms import forms
 from rig.analysis.tracing.free_form.ranges import Ranges
@@ -38,6 +38,7 @@ FORTH_AND_BACK = replace(
 )
 RUNS = ("slow_ke_1", "slow_ke_2", "load_20nm_1", "load_20nm_2", "speed_60rpm_1", "speed_60rpm_2", "lock_60_1")
 NOBODY: Final = cast("Prepared", None), cast("Solution", None)
+SHARP: Final = f"a torque on the load: {BY_THE_OUTPUT}"
 DRAWN = [name for name in SIMPLE if name != "time_periodic"]  # of what comes by the clock each run has its own phase
 
 
@@ -87,6 +88,14 @@ def test_finer_ones_are_the_same_forms_with_more_columns(coordinate: str) -> Non
     assert [form.words for form in coarse] == [form.words for form in fine]
     wide = [[next(iter(f.columns(FORTH_AND_BACK, ()).values())).shape[1] for f in some] for some in (coarse, fine)]
     assert all(a <= b for a, b in zip(*wide, strict=True))
+
+
+def test_a_torque_on_the_load_is_not_told_by_what_its_own_reading_has_been() -> None:
+    made = [
+        form for form in forms("memory", Seen(FORTH_AND_BACK), 1) if form.words.endswith("what the torque has been")
+    ]
+    assert len(made) > 5
+    assert all(Port.LOAD_TORQUE not in form.columns(FORTH_AND_BACK, ()) for form in made)
 
 
 def test_nothing_is_drawn_along_the_clock() -> None:
@@ -284,15 +293,18 @@ def test_of_each_coordinate_the_few_curves_that_few_rows_want_most_are_fitted_to
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     curves = {"speed": ("a", "b", "d", "e"), "load": ("c",), "memory": ()}
-    few = {"a": 5.0, "b": 7.0, "c": 6.0, "d": 4.0, "e": 9.0}
-    all_rows = {"a": 75.0, "b": 80.0, "c": 70.0, "d": 90.0, "e": 60.0}
+    few = {"a": 5.0, "b": 7.0, "c": 6.0, "d": 4.0, "e": 9.0, SHARP: 3.0}
+    all_rows = {"a": 75.0, "b": 80.0, "c": 70.0, "d": 90.0, "e": 60.0, SHARP: 50.0}
 
-    def possible(p: Prepared, name: str) -> list[Any]:
+    def possible(p: Prepared, name: str, finer: int = 1) -> list[Any]:
         surface = SimpleNamespace(words="surface", surface=True)
+        if finer == another.SHARP:
+            assert name == "load_angle"
+            return [surface, Curve("waves"), Curve(SHARP)]
         return [surface, *(Curve(words) for words in curves.get(name, ()))]
 
     def likeliest(p: Prepared, s: Solution, made: list[Any], count: int) -> list[Any]:
-        assert count == len(made) == 5
+        assert count == len(made) == 6
         return sorted(made, key=lambda form: -few[form.words])
 
     monkeypatch.setattr(another, "possible", possible)
@@ -302,4 +314,5 @@ def test_of_each_coordinate_the_few_curves_that_few_rows_want_most_are_fitted_to
     assert {name: (form.words, nats) for name, (form, nats) in found.items()} == {
         "speed": ("b", 80.0),
         "load": ("c", 70.0),
+        "load_angle": (SHARP, 50.0),  # a dent is too narrow for the usual curve
     }

@@ -26,8 +26,11 @@ class Run:
     has = frozenset({"t", "tau_l"})
     gear = SimpleNamespace(K=7160.0, J_l=0.8)  # 15.1 Hz
 
-    def __init__(self, turning: float) -> None:
-        self.turning = turning
+    def __init__(self, turning: float, even: bool = True) -> None:
+        self.turning, self.even = turning, even
+
+    def keeps_speed(self, within: float) -> bool:
+        return self.even
 
 
 class Rig:
@@ -46,8 +49,8 @@ def residuals(line: Any) -> dict[Key, Array]:
     return {(i, "L"): 0.05 * rng.standard_normal(N) + line(w) for i, w in enumerate(SPEEDS)}
 
 
-def look(e: dict[Key, Array]) -> interference.Interference | None:
-    return find_interference(cast(Equations, Rig()), e, {})
+def look(e: dict[Key, Array], rig: Any = Rig) -> interference.Interference | None:
+    return find_interference(cast(Equations, rig()), e, {})
 
 
 def test_a_steady_line_is_found_at_its_frequency_and_taken_away() -> None:
@@ -63,6 +66,14 @@ def test_what_wanders_about_the_gear_s_own_resonance_is_no_line_and_what_stands_
     wander = 2 * np.pi * (14.0 * T + 14.0 * 0.1 / (2 * np.pi * 0.01) * np.sin(2 * np.pi * 0.01 * T))
     assert look(residuals(lambda w: 0.1 * np.sin((1 + w / 420) * wander))) is None
     assert look(residuals(lambda w: 0.1 * np.sin(2 * np.pi * 14.0 * T + w))) is not None
+
+
+@pytest.mark.parametrize(("even", "found"), [(True, True), (False, False)])
+def test_what_wanders_far_while_the_motor_turns_evenly_is_no_order_and_no_resonance(even: bool, found: bool) -> None:
+    """At one speed throughout, and about the gear's own resonance; where the speed wanders an order does so too."""
+    alike = type("Alike", (), {"runs": tuple(Run(1.0, even) for _ in SPEEDS)})
+    wander = 2 * np.pi * (14.0 * T + 14.0 * 0.2 / (2 * np.pi * 0.01) * np.sin(2 * np.pi * 0.01 * T))
+    assert (look(residuals(lambda w: 0.1 * np.sin(wander + w)), alike) is not None) == found
 
 
 def test_orders_that_come_near_a_resonance_are_no_line_that_wanders() -> None:

@@ -28,7 +28,8 @@ PADDED = 4  # finer than a window's own resolution
 LEAP = 0.1  # relative: half a window on, a line that wanders by a fifth in a minute has gone a hundredth
 AROUND = 3.0  # times a frequency, and a third of it: its neighbourhood
 FEWEST = 3  # windows of a run, each half over the next
-WANDERS = 1.1  # highest over lowest within every run, and the most of its speed's: a resonance is narrower
+WANDERS = 1.25  # highest over lowest within every run: a resonance that rings is narrower
+EVEN = 1.1  # the same of the speed of a run that turns evenly
 STEADY = 1.02  # highest over lowest: a sixteenth of a hertz is how finely a window is read
 WHOLE_ORDERS = 0.7  # of the runs in which a line that wanders is a whole order of the motor: chance makes a tenth
 WHOLE_BY = 0.05  # of a turn: as near to one as a window reads a frequency at 75 rpm
@@ -107,7 +108,7 @@ def _in_channel(
     hz = np.array([np.median(t.hz[t.height > LINE]) for t in hits.values()])
     speed = np.array([eq.runs[i].turning for i, _ in hits])
     apart = float(hz.max() / hz.min())
-    travels = all(t.wander > WANDERS and eq.runs[i].keeps_speed(WANDERS) for (i, _), t in hits.items())
+    travels = all(t.wander > WANDERS and eq.runs[i].keeps_speed(EVEN) for (i, _), t in hits.items())
     if apart > LINE_WIDE or not (travels or speed.max() >= LINE_FREE * apart * speed.min()):
         return None
     usual = float(np.median(hz))
