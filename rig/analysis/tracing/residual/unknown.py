@@ -140,7 +140,7 @@ def _at_once(h: Halves, channel: str, others: Sequence[Home], most: float) -> li
     the runs."""
     turned = turned_since(h, channel) if channel == "A" else None
     senses = (*SENSES, _load) if channel == "L" else SENSES
-    steps = [*(since(h, channel, sense) for sense in senses), *([turned] if turned else [])]
+    steps = [step for step in (*(since(h, channel, sense) for sense in senses), turned) if step is not None]
     best = max(other.share for other in others if other.coordinate not in WITH_TIME)
 
     def is_first(step: Home) -> bool:
