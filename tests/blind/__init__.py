@@ -20,12 +20,14 @@ reader whether it takes a folder. What is here, in the order it is used:
     python -m tests.blind.score DIR
 
 Kinds: single (textbook form), single_other (another form), crowded (one main effect among eight at 1.01 to 1.12 times
-the floor), pair, clean, outside, ambiguous (the paper's own runs, which cannot decide). Plans: complete, paper, noreps,
-one_direction, no_torque_sensor.
+the floor), pair, clean, outside, ambiguous (the paper's own runs, which cannot decide). Plans: complete, paper,
+paper_once, paper_one_way, paper_no_torque_sensor, noreps, one_direction, no_torque_sensor, no_motor_torque,
+slow_and_locks, weights_at_one_speed, speeds_alone. A suite has complete ones, of one single in five noreps,
+one_direction or no_torque_sensor, and paper where it cannot be decided.
 
 Limits of this test: rig, noise and effects are simulated by people who had read the same notes as the tracer's authors;
 the declared inertias are exact; every run starts from the same home position; one effect at a time claims the extra
-body, the friction memory or the hysteresis; sizes of the plan without a torque sensor are those with one.
+body, the friction memory or the hysteresis.
 """
 
 import os
