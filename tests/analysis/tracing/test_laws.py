@@ -429,6 +429,12 @@ def test_a_late_load_angle_reads_what_was_however_late(late: float) -> None:
     np.testing.assert_allclose(late * column[40:-40], (s.theta_l - now)[40:-40], atol=2e-6)
 
 
+@pytest.mark.parametrize(("frequency", "zeta", "beyond"), [(40.0, 0.2, False), (40.0, 0.45, True), (90.0, 0.05, True)])
+def test_a_housing_that_does_not_swing_is_no_mode(frequency: float, zeta: float, beyond: bool) -> None:
+    band = replace(REACH, band=45.0)
+    assert SupportCompliance().beyond((ON_HOUSING, frequency, zeta), band) == beyond
+
+
 def test_a_steeper_fall_goes_faster_beyond_its_torque_and_slower_below() -> None:
     s, effect = motion(), LoadDependentKinematicError()
     even, steep = (effect.columns(s, (TORQUE, 5.0, 1e-4, d))[Port.KINEMATIC_ERROR][:, 0] for d in (1.0, 2.0))
