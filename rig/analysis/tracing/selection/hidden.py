@@ -66,8 +66,9 @@ def _in_the_floor(
         if home is None:
             here = ticking(p.eq, left, after, [last])
             home = largest([ticks(), here]) or hidden_order(p.eq, left, after, floors)
-            home = home or slipping_order(p.eq, left, floors)
             of_what = "what unseen runs leave there"
+        if home is None and (home := slipping_order(p.eq, left, floors)):
+            of_what = "what the runs that show it leave there"
     if home is None:
         return None
     what = "the angle the output has gone"
