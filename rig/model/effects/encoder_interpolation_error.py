@@ -12,6 +12,7 @@ from rig.model.gloss import waved
 from rig.model.waves import wave
 
 MOTOR, LOAD = 0.0, 1.0  # of the first shape parameter
+MEANT = 50  # rows, whose mean has little noise left
 
 
 class EncoderInterpolationError(Effect):
@@ -55,7 +56,8 @@ class EncoderInterpolationError(Effect):
         """Cosine and sine of the line angle."""
         side, lines = shape
         if side == LOAD:
-            x, kept, port = lines * signals.theta_l, signals.kept(lines, signals.omega_l), Port.READS_THETA_L
+            theta_l = at_rest(signals.theta_l, 2.0 * np.pi / lines)
+            x, kept, port = lines * theta_l, signals.kept(lines, signals.omega_l), Port.READS_THETA_L
         else:
             x, kept, port = lines * signals.theta_m, signals.kept(lines, signals.omega_m), Port.READS_THETA_M
         return {port: wave(x, kept)}
@@ -64,6 +66,13 @@ class EncoderInterpolationError(Effect):
         """Amplitude and phase, named by side and line count."""
         side = "load" if fit.shape[0] == LOAD else "motor"
         return harmonic(fit, f"{side}_{fit.shape[1]:g}_lines", "rad")
+
+
+def at_rest(theta: Array, line: float) -> Array:
+    """`theta` rad (n,) itself, or its mean where it passes less than half a `line`: as of a load that is locked. A wave
+    of that is a straight line through the noise of the reading, and would take the noise away."""
+    means = [part.mean() for part in np.array_split(theta, max(theta.size // MEANT, 1))] if theta.size else [0.0]
+    return theta if np.ptp(means) > line / 2.0 else np.full(theta.size, theta.mean() if theta.size else 0.0)
 
 
 def divisors(number: int) -> list[int]:

@@ -21,16 +21,14 @@ WHITE = 6.0
 
 
 def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | None:
-    """One turn against the next, or one stroke against the next of its direction, of a single run."""
+    """One stroke against the next of its direction, of a single run; one turn against the next where no two strokes
+    pass the same angles, as in one cycle about zero."""
     if key not in e:
         return None
     theta = eq.rows[key].theta_m
     parts = strokes(theta)
-    if len(parts) < 3:
-        return turn_by_turn(eq, e, key)
-    return _scatter(
-        eq, key, [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
-    )
+    made = [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
+    return _scatter(eq, key, made) or turn_by_turn(eq, e, key)
 
 
 def turn_by_turn(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | None:

@@ -29,6 +29,7 @@ LEFT: Final = 0.25  # of a run's sum of squares, the most that stairs may leave
 OFTEN: Final = 50  # rows a step, at least: with more of them they draw anything
 MOSTLY: Final = 0.75  # of the runs that stairs draw
 STEPS: Final = 10  # in all runs together, at least
+LEANS: Final = 0.5  # of a usual step, what a run goes on by from one to the next: a line that is drawn by steps has 1
 RUNS: Final = 3  # that have two and more
 NEAR: Final = 0.01  # rad of the output: steps so near each other are there because of the angle
 BY_CHANCE: Final = 3.0  # times what chance makes of such pairs, from which on it is the angle
@@ -47,7 +48,7 @@ def stairs(eq: Equations, e: Mapping[Key, Array]) -> dict[int, list[int]]:
         flat, lines = _left(y, edges)
         if len(edges) > 2 and flat < LEFT * float(y @ y):
             stepping += 1
-            if lines > SHARP * flat:
+            if lines > SHARP * flat and not _leans(y, edges):
                 found[key[0]] = edges[1:-1]
     several = sum(len(steps) > 1 for steps in found.values())
     plain = sum(map(len, found.values())) >= STEPS and several >= RUNS and len(found) >= MOSTLY * stepping
@@ -71,6 +72,18 @@ def _left(y: Array, edges: Sequence[int]) -> tuple[float, float]:
     hats = np.stack([np.interp(np.arange(y.size), knots, one) for one in np.eye(knots.size)], 1)
     lines = hats @ np.linalg.lstsq(hats, y, rcond=None)[0]
     return float(np.sum((y - flat) ** 2)), float(np.sum((y - lines) ** 2))
+
+
+def _leans(y: Array, edges: Sequence[int]) -> bool:
+    """Whether between its steps `y` (n,) goes on the same way: a slope that now and then falls back is stairs with many
+    small steps one way and few large ones back, and as sharp as they."""
+    parts = [y[a:b] for a, b in itertools.pairwise(edges)]
+    means = np.array([part.mean() for part in parts])
+    within = [np.arange(part.size) - (part.size - 1) / 2 for part in parts]
+    slope = sum(float(x @ part) for x, part in zip(within, parts, strict=True))
+    slope /= sum(float(x @ x) for x in within)
+    rise = abs(slope) * float(np.mean([part.size for part in parts]))
+    return bool(rise > LEANS * np.median(np.abs(np.diff(means))))
 
 
 def _of_the_angle(eq: Equations, found: Mapping[int, Sequence[int]]) -> bool:
