@@ -40,12 +40,17 @@ class Home:
 
 
 def plainest(found: Sequence[Home]) -> list[Home]:
-    """The best first, and before it simpler ones that do nearly as well; of those that are said late the best."""
+    """The best first, and before it simpler ones that do nearly as well; of those that are said late the best. A wave
+    that all runs have in common and that tells more than any memory comes before that: how far something is behind its
+    past tells when in which run a row is, and by that whatever goes slowly."""
     best = max(h.share for h in found)
+    remembered = max((h.share for h in found if h.coordinate == "memory"), default=0.0)
 
-    def rank(h: Home) -> tuple[bool, bool, bool, int, float]:
-        simple = len(SIMPLE) if h.late else SIMPLE.index(h.coordinate)
-        return h.share < PLAIN_ENOUGH * best, not h.first, h.late, simple, -h.share
+    def rank(h: Home) -> tuple[bool, bool, bool, int, bool, float]:
+        common = h.late and h.coordinate == "time_periodic" and h.share > remembered
+        late = h.late and not common
+        simple = len(SIMPLE) if late else SIMPLE.index("memory" if common else h.coordinate)
+        return h.share < PLAIN_ENOUGH * best, not h.first, late, simple, not common, -h.share
 
     return sorted(found, key=rank)
 

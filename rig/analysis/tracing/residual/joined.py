@@ -100,8 +100,9 @@ def rest(
         return None
     made = [_coordinates(eq, k) for k in keys]
     at = {name: np.concatenate([m[name] for m in made]) for name in made[0]}
-    if channel == "L":  # what the reading has wrong would go with the reading: the torque the model expects
-        at["load"] = at["load"] - np.concatenate([e[k] for k in keys])
+    own = {"L": "load", "M": "motor_torque"}.get(channel)
+    if own is not None:  # what the reading has wrong would go with the reading: the torque the model expects
+        at[own] = at[own] - np.concatenate([e[k] for k in keys])
     run = np.concatenate([np.full(e[k].size, k[0]) for k in keys])
     smooth = eq.runs[keys[0][0]].smoother
     left = np.concatenate([e[k] / floors[k] for k in keys])
