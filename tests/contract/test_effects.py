@@ -310,6 +310,25 @@ def test_lines_that_are_seen_are_tried_with_their_neighbours():
     assert {(0.0, n) for n in (127.0, 128.0, 129.0, 255.0, 257.0)} == {shape for shape in tried if shape[0] == 0.0}
 
 
+def test_a_load_at_rest_passes_no_line():
+    """A wave of its angle would be a straight line through the noise of that reading."""
+    lines = CATALOGUE["encoder_interpolation_error"]
+    count = 2 * np.pi / (4 * 49152)
+    s = motion()
+    noise = count * np.random.default_rng(3).standard_normal(s.t.size)
+    still = dataclasses.replace(s, theta_l=0.3 + noise)
+    moving = dataclasses.replace(s, theta_l=0.3 + noise + 9 * count * np.linspace(0, 1, s.t.size))
+    assert np.ptp(lines.columns(still, (1.0, 49152.0))[Port.READS_THETA_L], axis=0) == pytest.approx(0.0, abs=1e-9)
+    assert np.ptp(lines.columns(moving, (1.0, 49152.0))[Port.READS_THETA_L], axis=0).min() > 1.0
+
+
+def test_orders_of_the_flexspline_are_told_in_the_paper_s_stroke_for_any_ratio_up_to_100():
+    """Eight turns of the motor about zero, 2.02 beside 2; half of them tell nothing."""
+    frame = CATALOGUE["flexspline_frame_error"]
+    assert all(frame.shapes(dataclasses.replace(REACH, ratio=n, load_turns=8 / n)) for n in (50.0, 80.0, 100.0))
+    assert not frame.shapes(dataclasses.replace(REACH, load_turns=4 / 100.0))
+
+
 def test_a_vibration_has_its_frequency_whatever_the_motor_does():
     effect = EACH_RUN["external_vibration"]
     for s in (motion(1.0), motion(-1.0)):

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from rig.analysis.tracing.fit.equations import Noise
-from rig.analysis.tracing.floor import of_a_run
+from rig.analysis.tracing.floor import noise, of_a_run
 from rig.analysis.tracing.floor.friction import Scattering
-from rig.analysis.tracing.floor.noise import Measured, _as_sensors_tell, _quietest, finest
+from rig.analysis.tracing.floor.noise import Measured, _alone, _as_sensors_tell, _quietest, finest
 from rig.analysis.tracing.floor.of_a_run import floor_of, leniency
 from rig.analysis.tracing.floor.offsets import own_offset
 from rig.analysis.tracing.floor.outlying import outlying
@@ -164,6 +164,22 @@ def test_repeats_that_hunt_at_one_speed_tell_no_other_speeds_floor() -> None:
     assert pairs_at((1.2e-3, 9.8e-3)) == []  # which of two is the usual one nobody can tell
     assert pairs_at((1.2e-3, 2.0e-3, 3.0e-3, 4.0e-3)) == []  # a clock that jitters
     assert pairs_at((1.2e-3, 1.2e-3, 9.8e-3), freedom=1.0) == []  # a gain, once alike and once not
+
+
+def test_one_cycle_about_zero_is_compared_turn_by_turn(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No two of its strokes pass the same angles; the noise of lock tests, compared in pairs, is another one."""
+    theta = np.concatenate([np.linspace(0, 25, 3000), np.linspace(25, -25, 6000), np.linspace(-25, 0, 3000)])
+    monkeypatch.setattr(noise, "as_fast", lambda a, b: a is b)
+    run = SimpleNamespace(locked=False, ratio=50.0, step_m=1e-4, step_l=1e-6)
+    eq: Any = SimpleNamespace(rows={(0, "A"): SimpleNamespace(theta_m=theta)}, runs=[run, SimpleNamespace()])
+    left = {(0, "A"): 3e-6 * rng.standard_normal(theta.size)}
+    lock = Scatter((1, 1), 2e-6, 500, 0.0, np.ones(61), 500.0)
+    (found,) = _alone(eq, left, "A", [0], [lock])
+    assert found.pair == (0, 0)
+    assert found.rms == pytest.approx(3e-6, rel=0.05)
+    assert _alone(eq, left, "M", [0], [lock]) == []
 
 
 def test_a_floor_leaves_out_what_is_told_apart() -> None:

@@ -53,6 +53,11 @@ def test_counts_that_are_lost_again_and_again_are_found_where_they_were() -> Non
         assert np.all(np.abs(np.array(found[run]) - true) <= 2)
 
 
+def saw(period: int, at: int) -> Array:
+    """Goes up evenly and falls back at once, as the delay between two clocks does that run apart."""
+    return 40 * COUNT * np.mod((np.arange(ROWS) + at) / period, 1.0)
+
+
 def wave(n: float) -> Array:
     return 20 * COUNT * np.sin(2 * np.pi * n * np.arange(ROWS) / ROWS)
 
@@ -62,6 +67,7 @@ def wave(n: float) -> Array:
     [
         [np.zeros(ROWS)] * RUNS,
         [wave(n) for n in (1.0, 2.0, 3.0, 5.0)],  # what waves is drawn better by lines
+        [saw(170, at) for at in (20, 60, 110, 150)],  # steps with a slope in between
         [12 * COUNT * (np.arange(ROWS) > 300)] * RUNS,  # one step a run is told by itself
         [walk(np.random.default_rng(3)), *[np.zeros(ROWS)] * (RUNS - 1)],  # one run alone may have had a shock
     ],

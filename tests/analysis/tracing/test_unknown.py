@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from rig.analysis.tracing.residual import unknown
+from rig.analysis.tracing.residual import joined, unknown
 from rig.analysis.tracing.residual.binned import Beside, Halves, folds, own_excess, straightened
 from rig.analysis.tracing.residual.home import Home, plainest
 from rig.analysis.tracing.residual.joined import Rest
@@ -139,6 +140,31 @@ def test_the_coordinate_it_was_made_with_is_said(what: str) -> None:
 def said(at: At, e: np.ndarray, channel: str = "A") -> str:
     """The coordinate of a rest (n,) over its floor."""
     return plainest(homes(Rest(e, np.repeat(np.arange(RUNS), ROWS), at, DT, *NO_BASELINE), channel))[0].coordinate
+
+
+def test_a_wave_all_runs_have_in_common_is_said_before_a_memory_that_tells_less() -> None:
+    """How far something is behind its past tells when in a run a row is (exam 106, case 07)."""
+
+    def first(wave: float, *others: Home) -> str:
+        return plainest([*others, Home("time_periodic", "M", wave, frequency_hz=0.058, late=True)])[0].coordinate
+
+    memory = Home("memory", "M", 0.60)
+    assert first(0.63, memory) == "time_periodic"
+    assert first(0.59, memory) == "memory"
+    assert first(0.63, memory, Home("load", "M", 0.61)) == "load"  # plainer than either
+
+
+def test_what_a_torque_has_been_holds_nothing_of_what_is_left_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A rest that goes slowly would be told by its own past (exam 106, case 07)."""
+    read = {"motor_torque": np.full(9, 0.5), "load": np.full(9, 7.0)}
+    monkeypatch.setattr(joined, "_coordinates", lambda eq, key: dict(read))
+    smooth = SimpleNamespace(dt=0.001, step=8)
+    eq: Any = SimpleNamespace(runs=[SimpleNamespace(smoother=smooth, has=())], timed=True)
+    eq.share_of_mean = lambda key, n: 0.0
+    for channel, name, expected in (("M", "motor_torque", 0.4), ("L", "load", 6.9)):
+        r = joined.rest(eq, {(0, channel): np.full(9, 0.1)}, {(0, channel): 0.01}, channel, beside=False)
+        assert r is not None
+        assert {n: x[0] for n, x in r.at.items()} == pytest.approx({"motor_torque": 0.5, "load": 7.0, name: expected})
 
 
 @pytest.mark.slow

@@ -60,6 +60,20 @@ def test_a_line_above_what_slow_runs_resolve_is_told_by_the_fast_ones(
     assert vibration._loudest(eq, e) == pytest.approx(hz, abs=0.005)
 
 
+def test_runs_that_all_go_through_the_same_speeds_tell_by_their_stretches(
+    monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    """Of six stairs of the torque each turns as fast as the others in the mean, and at every speed within."""
+    t = 0.008 * np.arange(5000)
+    monkeypatch.setattr(vibration, "clock", lambda eq, key: t)
+    wave = {(i, "L"): np.sin(2 * np.pi * 6.37 * t + i) + 0.3 * rng.standard_normal(t.size) for i in range(6)}
+    for speed, found in ((5.0 + 40.0 * t / t[-1], 6.37), (25.0 + 0.0 * t, None)):
+        rows = {key: SimpleNamespace(theta_m=0.008 * np.cumsum(speed)) for key in wave}
+        eq: Any = SimpleNamespace(rows=rows, runs=[SimpleNamespace(turning=25.0)] * 6)
+        hz = vibration._loudest(eq, wave)
+        assert hz == (found and pytest.approx(found, abs=0.005))
+
+
 @pytest.mark.parametrize(("half", "is_one"), [(0.01, True), (0.08, False)])
 def test_a_line_whose_torque_may_be_nothing_is_no_vibration(half: float, is_one: bool) -> None:
     line = vibration.Line(52.84, {"A": 0.0, "L": 0.065}, 0.001, half, 0.065)

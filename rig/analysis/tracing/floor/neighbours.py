@@ -21,14 +21,16 @@ WHITE = 6.0
 
 
 def neighbours(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | None:
-    """One stroke against the next of its direction, of a single run; one turn against the next where no two strokes
-    pass the same angles, as in one cycle about zero."""
+    """One turn against the next, or one stroke against the next of its direction, of a single run."""
     if key not in e:
         return None
     theta = eq.rows[key].theta_m
     parts = strokes(theta)
-    made = [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
-    return _scatter(eq, key, made) or turn_by_turn(eq, e, key)
+    if len(parts) < 3:
+        return turn_by_turn(eq, e, key)
+    return _scatter(
+        eq, key, [compare(theta[a], e[key][a], theta[b], e[key][b]) for a, b in zip(parts, parts[2:], strict=False)]
+    )
 
 
 def turn_by_turn(eq: Equations, e: Mapping[Key, Array], key: Key) -> Scatter | None:

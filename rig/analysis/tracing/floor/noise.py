@@ -264,13 +264,14 @@ def _alone(
     eq: Equations, e: Mapping[Key, Array], channel: str, among: Sequence[int], found: Sequence[Scatter]
 ) -> list[Scatter]:
     """In A, whose noise is white, runs of conditions that no pair was compared in, each beside itself: how an encoder's
-    rounding averages out depends on the speed.
+    rounding averages out depends on the speed. One cycle about zero has no two strokes that pass the same angles.
     """
     if channel != "A":
         return []
     compared = {i for s in found for i in s.pair}
     rest = [i for i in among if (i, channel) in e and not any(as_fast(eq.runs[i], eq.runs[j]) for j in compared)]
-    return [s for i in rest if (s := neighbours(eq, e, (i, channel))) is not None]
+    found = [neighbours(eq, e, (i, channel)) or turn_by_turn(eq, e, (i, channel)) for i in rest]
+    return [s for s in found if s is not None]
 
 
 def _never_compared(

@@ -126,7 +126,10 @@ def _loudest(eq: Equations, e: Mapping[Key, Array]) -> float | None:
     each frequency the runs tell whose rows are dense enough: in slow ones a fast line stands where it is no line."""
     channel = "L" if any(c == "L" for _, c in e) else "A"
     keys = [k for k in e if k[1] == channel and e[k].size > 256]
-    parts = [part for key in keys for part in _parts(eq, key, e[key], 1 if len(keys) >= FEWEST else STRETCHES)]
+    turning = [eq.runs[i].turning for i, _ in keys]
+    # long runs that all go through the same speeds tell by their stretches
+    whole = len(keys) >= FEWEST and max(turning) > LINE_SPEEDS * min(turning)
+    parts = [part for key in keys for part in _parts(eq, key, e[key], 1 if whole else STRETCHES)]
     if len(parts) < FEWEST:
         return None
     tops = np.array([0.98 * 0.5 / float(np.median(np.diff(t))) for t, _, _ in parts])
