@@ -270,8 +270,7 @@ def _alone(
         return []
     compared = {i for s in found for i in s.pair}
     rest = [i for i in among if (i, channel) in e and not any(as_fast(eq.runs[i], eq.runs[j]) for j in compared)]
-    found = [neighbours(eq, e, (i, channel)) or turn_by_turn(eq, e, (i, channel)) for i in rest]
-    return [s for s in found if s is not None]
+    return [s for i in rest if (s := neighbours(eq, e, (i, channel)) or turn_by_turn(eq, e, (i, channel))) is not None]
 
 
 def _never_compared(
