@@ -364,3 +364,15 @@ def test_an_eccentric_disc_reads_less_in_the_higher_orders():
 
     assert effect.plausible(of((3.0, 1.0, 0.5)))
     assert not effect.plausible(of((1.0, 3.0, 0.5)))
+
+
+def test_friction_builds_up_from_nothing_where_a_run_sets_out_from_rest():
+    """The low-passed speed looks ahead: it is that of a run that has slid before."""
+    effect, s = CATALOGUE["presliding_friction"], motion()
+    x_0 = 0.5
+    slid = effect.columns(s, (0.0, x_0, 0.0))[Port.MOTOR_TORQUE][:, 0]
+    assert slid[0] == pytest.approx(0.0)
+    gone = np.concatenate([[0.0, 1e-5, 1e-4], s.theta_m[3:] - s.theta_m[3] + 1e-3])
+    rested = effect.columns(dataclasses.replace(s, theta_m=gone), (0.0, x_0, 0.0))[Port.MOTOR_TORQUE][:, 0]
+    assert rested[0] == pytest.approx(-1.0)
+    assert rested[500] == pytest.approx(-np.exp(-gone[500] / x_0), rel=1e-3)

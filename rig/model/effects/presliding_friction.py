@@ -46,6 +46,7 @@ class PreslidingFriction(Effect):
     WAYS: Final = (0.003, 0.01, 0.03, 0.1, 0.3, 1.0)  # rad of the motor; less than a sample of the slow run at first
     SPREAD: Final = (0.2, 0.6, 1.8, 5.4)  # of x_0: after which ways the elements slip
     DECADES: Final = (0.3, 1.0, 4.0, 16.0)  # of x_0: ways of several bristles
+    SETS_OUT: Final = 0.6  # of the low-passed speed, what the angle shows of it in the first two steps from rest
     TURNS: Final = 0.04  # rad/s of the motor: a run that turns faster when it begins has slid before
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
@@ -66,8 +67,7 @@ class PreslidingFriction(Effect):
     def columns(self, signals: Signals, shape: Shape) -> Mapping[Port, Array]:
         """One column, or one an element or bristle."""
         side, x_0, law = shape
-        first = signals.omega_m[0] if signals.t.size else 0.0
-        start = float(np.sign(first)) if abs(first) > self.TURNS else 0.0
+        start = self._before(signals)
         if side == LOAD:
             return {Port.LOAD_TORQUE: (presliding(signals.theta_l, x_0, start) - signals.way)[:, None]}
         if law == ELEMENTS:
@@ -78,6 +78,14 @@ class PreslidingFriction(Effect):
             missing = np.stack(states, 1) - signals.way[:, None]
             return {Port.MOTOR_TORQUE: missing if law == BRISTLES else _each_way(missing, signals.way)}
         return {Port.MOTOR_TORQUE: (presliding(signals.theta_m, x_0, start) - signals.way)[:, None]}
+
+    def _before(self, s: Signals) -> float:
+        """Which way the motor had slid before the run began, 0 of one that begins at rest: the low-passed speed looks
+        ahead, so that the first two steps of the angle are asked as well."""
+        first = float(s.omega_m[0]) if s.t.size else 0.0
+        step = float(s.theta_m[2] - s.theta_m[0]) / (2 * s.dt) if s.t.size > 2 else first
+        slid = abs(first) > self.TURNS and not abs(step) < self.SETS_OUT * abs(first)
+        return float(np.sign(first)) if slid else 0.0
 
     def parameters(self, fit: Fit) -> tuple[Parameter, ...]:
         """The friction that builds up, and over which way."""

@@ -16,6 +16,7 @@ from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.once_under_load import OnceUnderLoad, once_under_load
 from rig.analysis.tracing.floor.own_delays import SKEW, own_delays
 from rig.analysis.tracing.floor.ringing import ringing
+from rig.analysis.tracing.floor.scratched import scratched
 from rig.analysis.tracing.floor.shaken_load import shaken_load
 from rig.analysis.tracing.floor.shaken_motor import shaken_motor
 from rig.analysis.tracing.floor.sidebands import sidebands
@@ -112,10 +113,12 @@ def _shaken(s: Solution, e: Mapping[Key, Array], everywhere: Mapping[Key, Array]
 def _stepping(
     eq: Equations, everywhere: Mapping[Key, Array], own: Own, steps: Steps, whole: Sequence[int]
 ) -> Own | None:
-    """With counts that were lost within runs, or a jump that may be the gear's; None where the steps are neither, by
-    the repeats among runs `whole`."""
+    """With counts that were lost within runs, anywhere or at one place, or a jump that may be the gear's; None where
+    the steps are none of these, by the repeats among runs `whole`."""
     if not lost_counts(eq, steps, repeats(eq.runs, whole)):
-        return None
+        if (lost := scratched(eq, everywhere, steps)) is None:
+            return None
+        steps = lost
     columns = step_columns(eq, steps)
     if explained(eq, everywhere, columns) <= OWN:
         return None
