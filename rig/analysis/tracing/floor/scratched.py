@@ -64,7 +64,7 @@ def _apart(at: Array, place: float) -> Array:
 
 def _way(theta: Array) -> Array:
     """Which way the output turns in each row, (n,)."""
-    return np.sign(np.gradient(theta))
+    return np.asarray(np.sign(np.gradient(theta)))
 
 
 def _times(theta: Array, place: float, way: float) -> int:
