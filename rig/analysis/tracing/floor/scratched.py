@@ -59,7 +59,7 @@ def _large(steps: Steps) -> Steps:
 
 def _apart(at: Array, place: float) -> Array:
     """Angles [rad] between those and the place, on a disc."""
-    return np.abs(np.angle(np.exp(1j * (at - place))))
+    return np.asarray(np.abs(np.angle(np.exp(1j * (at - place)))))
 
 
 def _way(theta: Array) -> Array:
