@@ -91,6 +91,17 @@ def test_a_run_too_long_for_it_is_left_alone(monkeypatch: pytest.MonkeyPatch) ->
     assert stairs(rig(SPEEDS), made) == {}
 
 
+def test_a_crest_that_is_drawn_by_two_steps_takes_its_time() -> None:
+    """As order 2 leaves it of order 2.04 (exam plant 106, seed 7, case 19)."""
+    turns = np.arange(ROWS) / 190
+    crests = 25 * COUNT * np.exp(4.0 * (np.cos(2 * np.pi * turns) - 1.0))
+    half = np.flatnonzero(np.diff(crests > crests.max() / 2)) + 1
+    assert not module._at_once(crests, [0, *half, ROWS])
+    made = walk(np.random.default_rng(5))
+    y = left([made])[0, "A"]
+    assert module._at_once(y, [0, *(np.flatnonzero(np.diff(made)) + 1), ROWS])
+
+
 def own(columns: Array, many: bool = False) -> Own:
     return Own({LOST.name: {(0, "A"): columns}, "other": {}}, {LOST.name: (), "other": ()}, None, many=many)
 

@@ -30,6 +30,9 @@ OFTEN: Final = 50  # rows a step, at least: with more of them they draw anything
 MOSTLY: Final = 0.75  # of the runs that stairs draw
 STEPS: Final = 10  # in all runs together, at least
 LEANS: Final = 0.5  # of a usual step, what a run goes on by from one to the next: a line that is drawn by steps has 1
+BEFORE: Final = slice(-2 * EDGE, -EDGE)  # rows of what lies between two steps, beyond what the low-pass spreads
+AFTER: Final = slice(EDGE, 2 * EDGE)
+AT_ONCE: Final = 0.55  # of a step, what a run has done of it by then: waves 0.36 to 0.43, lost counts from 0.59
 RUNS: Final = 3  # that have two and more
 NEAR: Final = 0.01  # rad of the output: steps so near each other are there because of the angle
 BY_CHANCE: Final = 3.0  # times what chance makes of such pairs, from which on it is the angle
@@ -48,7 +51,7 @@ def stairs(eq: Equations, e: Mapping[Key, Array]) -> dict[int, list[int]]:
         flat, lines = _left(y, edges)
         if len(edges) > 2 and flat < LEFT * float(y @ y):
             stepping += 1
-            if lines > SHARP * flat and not _leans(y, edges):
+            if lines > SHARP * flat and not _leans(y, edges) and _at_once(y, edges):
                 found[key[0]] = edges[1:-1]
     several = sum(len(steps) > 1 for steps in found.values())
     plain = sum(map(len, found.values())) >= STEPS and several >= RUNS and len(found) >= MOSTLY * stepping
@@ -84,6 +87,15 @@ def _leans(y: Array, edges: Sequence[int]) -> bool:
     slope /= sum(float(x @ x) for x in within)
     rise = abs(slope) * float(np.mean([part.size for part in parts]))
     return bool(rise > LEANS * np.median(np.abs(np.diff(means))))
+
+
+def _at_once(y: Array, edges: Sequence[int]) -> bool:
+    """Whether `y` (n,) is, right after its steps, as far from what it was right before as the means between them are: a
+    wave that is drawn by steps takes its time."""
+    parts = [y[a:b] for a, b in itertools.pairwise(edges)]
+    whole = np.diff([part.mean() for part in parts])
+    before, after = (np.array([part[which].mean() for part in parts]) for which in (BEFORE, AFTER))
+    return bool((after[1:] - before[:-1]) @ whole > AT_ONCE * (whole @ whole))
 
 
 def _of_the_angle(eq: Equations, found: Mapping[int, Sequence[int]]) -> bool:
