@@ -79,3 +79,11 @@ def test_a_place_passed_more_often_than_a_run_jumps_there_is_none() -> None:
 def test_where_no_angle_is_passed_before_and_after_nothing_is_known() -> None:
     eq, e, steps = made([np.linspace(-0.4, 0.4, ROWS) + 0.01 * i for i in range(4)], forth)
     assert scratched(eq, e, steps) is None
+
+
+def test_runs_about_zero_are_told_where_they_end_and_began() -> None:
+    """No other angle is passed the same way before and after."""
+    eq, e, steps = made([CYCLE] * 4, forth)
+    assert scratched(eq, e, steps) is not None
+    eq, e, steps = made([CYCLE] * 4, by_the_way)
+    assert scratched(eq, e, steps) is None

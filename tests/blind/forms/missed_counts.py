@@ -1,4 +1,5 @@
-"""A permanent step in one encoder [physics D8]: load encoder (textbook), a random walk, motor encoder, at speed."""
+"""A permanent step in one encoder [physics D8]: load encoder (textbook), a random walk, motor encoder, at speed, at a
+scratch."""
 
 from __future__ import annotations
 
@@ -73,9 +74,24 @@ def at_speed(builder: Builder, rng: np.random.Generator, strength: float) -> Par
     return {"counts": counts, "past_rad_s": past}
 
 
+def scratch(builder: Builder, rng: np.random.Generator, strength: float) -> Parameters:
+    """A scratch on the load encoder's disc: counts are lost when it is passed one way, and kept on the way back."""
+    counts, way = -max(round(pick(rng, 8, 20) * strength), 2), float(rng.choice([-1.0, 1.0]))
+    place = float(rng.uniform(-0.3, 0.3))  # rad, within what slow runs pass
+
+    def read(columns: Columns, where: Context) -> None:
+        turn = np.floor(way * (columns["theta_l"] - place) / (2 * np.pi))
+        passed = np.maximum(np.diff(turn, prepend=turn[0]), 0.0)
+        columns["theta_l"] += counts * LOAD_COUNT * np.cumsum(passed)
+
+    builder.sensors.changes.append(read)
+    return {"counts": counts, "place_rad": place, "way": way}
+
+
 FORMS = (
     Form("missed_counts", "load_steps", load_steps, textbook=True, weakest=0.2, strongest=12.0),
     Form("missed_counts", "random_walk", random_walk, weakest=0.2, strongest=8.0),
     Form("missed_counts", "motor_steps", motor_steps, weakest=0.2, strongest=12.0),
     Form("missed_counts", "at_speed", at_speed, weakest=0.2, strongest=12.0),
+    Form("missed_counts", "scratch", scratch, weakest=0.2, strongest=12.0),
 )

@@ -14,6 +14,7 @@ from rig.analysis.tracing.floor.between_runs import find_between
 from rig.analysis.tracing.floor.interference import Interference, find_interference
 from rig.analysis.tracing.floor.local import joined
 from rig.analysis.tracing.floor.once_under_load import OnceUnderLoad, once_under_load
+from rig.analysis.tracing.floor.own_beats import own_beats
 from rig.analysis.tracing.floor.own_delays import SKEW, own_delays
 from rig.analysis.tracing.floor.ringing import ringing
 from rig.analysis.tracing.floor.scratched import scratched
@@ -84,8 +85,10 @@ def find(s: Solution, parts: Split) -> Own:
         stepping = _that_takes_more(everywhere, many, stepping)
     if stepping is not None:
         return stepping
-    if not _is_late(s.design.terms) and (late := own_delays(s, whole, runs)) is not None:
-        return _with(own, SKEW.name, late.columns, late.parameters(), late.sentence())
+    if not _is_late(s.design.terms):
+        late = own_beats(eq, everywhere, whole, runs) or own_delays(s, whole, runs)
+        if late is not None:
+            return _with(own, SKEW.name, late.columns, late.parameters(), late.sentence())
     if steps is None or steps.rows or (between := find_between(s, whole)) is None:
         return own
     return _with(own, LOST.name, between.columns(eq), between.parameters(), between.sentence(eq))

@@ -75,18 +75,30 @@ def _times(theta: Array, place: float, way: float) -> int:
 
 
 def _stays(e: Mapping[Key, Array], theta: Mapping[int, Array], steps: Steps, place: float) -> bool:
-    """Whether runs are off by the sizes of their jumps at angles that they come by the same way before and after."""
+    """Whether runs are off by the sizes of their jumps at angles that they come by the same way before and after. A run
+    about zero ends where it began: bins lie beside each other in one way or another."""
+    found = [_off(e, theta, steps, place, shift) for shift in (0.0, 0.5)]
+    together, alone, seen = max(found, key=lambda one: one[2])
+    least, most = STAYS
+    return seen > SEEN and least < together / max(alone, 1e-300) < most
+
+
+def _off(
+    e: Mapping[Key, Array], theta: Mapping[int, Array], steps: Steps, place: float, shift: float
+) -> tuple[float, float, int]:
+    """Sums over rows of how far the jumps put them apart from others of their bin times how far they are, and of its
+    square, and their number; bins `shift` of one further on."""
     together = alone = 0.0
     seen = 0
     for run, rows in steps.rows.items():
         off = _sum(rows, steps.sizes[run], theta[run].size)
-        bins = (np.mod(theta[run], TURN) / TURN * BINS).astype(int) * 2 + (_way(theta[run]) > 0)
+        place_of = np.floor(np.mod(theta[run] + shift * TURN / BINS, TURN) / TURN * BINS).astype(int)
+        bins = place_of * 2 + (_way(theta[run]) > 0)
         x, y = _about_their_means(off, bins), _about_their_means(e[run, "A"], bins)
         x = np.where(_apart(theta[run], place) > TURN / BINS + NEAR, x, 0.0)  # a bin that holds a jump is on both sides
         seen += int(np.sum(np.abs(x) > 0.0))
         together, alone = together + float(x @ y), alone + float(x @ x)
-    least, most = STAYS
-    return seen > SEEN and least < together / max(alone, 1e-300) < most
+    return together, alone, seen
 
 
 def _sum(rows: Sequence[int], sizes: Sequence[float], n: int) -> Array:
