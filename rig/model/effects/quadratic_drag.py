@@ -38,8 +38,9 @@ class QuadraticDrag(Effect):
     AT: Final = 10.0  # rad/s
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Around 2. Creep alone has no drag to speak of."""
-        if reach.fastest <= 2.0 * reach.slowest:
+        """Around 2. Creep alone has no drag to speak of, nor has one speed, whatever a motor does against a locked output:
+        where it turns back a falling friction looks like it."""
+        if reach.fastest <= 2.0 * max(reach.slowest, reach.slowest_free):
             return ()
         kinds = ((0.0, MOTOR), (1.0, MOTOR), (0.0, LOAD))
         return tuple((by_way, p, side) for by_way, side in kinds for p in self.EXPONENTS)
