@@ -376,3 +376,10 @@ def test_friction_builds_up_from_nothing_where_a_run_sets_out_from_rest():
     rested = effect.columns(dataclasses.replace(s, theta_m=gone), (0.0, x_0, 0.0))[Port.MOTOR_TORQUE][:, 0]
     assert rested[0] == pytest.approx(-1.0)
     assert rested[500] == pytest.approx(-np.exp(-gone[500] / x_0), rel=1e-3)
+
+
+def test_no_drag_is_told_at_one_speed_whatever_lock_tests_creep_at():
+    drag = CATALOGUE["quadratic_drag"]
+    one_speed = dataclasses.replace(REACH, fastest=2.0, slowest=0.06, slowest_free=0.9)
+    assert drag.shapes(one_speed) == ()
+    assert drag.shapes(dataclasses.replace(one_speed, fastest=12.0))

@@ -36,11 +36,12 @@ class QuadraticDrag(Effect):
     usual: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({"exponent": (2.0,), "side": (MOTOR,)})
     EXPONENTS: Final = (1.6, 2.0, 2.6)
     AT: Final = 10.0  # rad/s
+    WIDE: Final = 3.0  # fastest over slowest: a motor at one speed overshoots to twice that where it sets out
 
     def shapes(self, reach: Reach) -> tuple[Shape, ...]:
-        """Around 2. Creep alone has no drag to speak of, nor has one speed, whatever a motor does against a locked output:
-        where it turns back a falling friction looks like it."""
-        if reach.fastest <= 2.0 * max(reach.slowest, reach.slowest_free):
+        """Around 2. Creep alone has no drag to speak of, nor has one speed, whatever a motor does against a locked
+        output: where it sets out and turns back a falling friction looks like it."""
+        if reach.fastest <= self.WIDE * max(reach.slowest, reach.slowest_free):
             return ()
         kinds = ((0.0, MOTOR), (1.0, MOTOR), (0.0, LOAD))
         return tuple((by_way, p, side) for by_way, side in kinds for p in self.EXPONENTS)
