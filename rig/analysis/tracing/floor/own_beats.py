@@ -14,7 +14,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.equations import Equations, Key, Term
+from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
 from rig.analysis.tracing.floor.local import at_rows, clock
 from rig.analysis.tracing.nameless.law import Nameless
 from rig.core.quantiles import Z95
@@ -55,22 +55,17 @@ class BeatingDelay(Nameless):
 
 @dataclass(frozen=True)
 class OwnBeats:
-    """Columns (n, k) of every run, how often the delay comes round [Hz], and its mean and how far it swings [s] in each
-    run that tells, (runs,)."""
+    """Columns (n, k) of every run, how often the delay comes round [Hz], and how far it swings [s] in each run that
+    tells, (runs,)."""
 
     columns: dict[Key, Array]
     frequency: float
-    means: Array
     swings: Array
 
     def parameters(self) -> tuple[Parameter, ...]:
-        """The mean delay, and how far its values are from it."""
-        several = np.sqrt(self.means.size)
-        mean, swing = float(self.means.mean()), float(self.swings.mean())
-        return (
-            parameter("skew_theta_l", mean, Z95 * float(self.means.std(ddof=1)) / several, "s"),
-            parameter("scatter_theta_l", swing, Z95 * float(self.swings.std(ddof=1)) / several, "s"),
-        )
+        """How far its values are from their mean, RMS: at an even speed the mean is a zero like any other."""
+        half = Z95 * float(self.swings.std(ddof=1)) / np.sqrt(self.swings.size)
+        return (parameter("scatter_theta_l", float(self.swings.mean()), half, "s"),)
 
     def sentence(self) -> str:
         """What it does, and what is not told."""
@@ -101,17 +96,16 @@ def own_beats(eq: Equations, e: Mapping[Key, Array], whole: Sequence[int], runs:
         phase = _Run(clock(eq, (i, "A")), at_rows(eq, (i, "A"), "omega_l"), e[i, "A"]).fitted(frequency).phase
         made = eq.term(i, Term(BeatingDelay(), (frequency, phase))) if (i, "A") in e else {}
         columns |= {(i, c): m for c, m in made.items() if np.any(m)}
-    return OwnBeats(columns, frequency, np.array([f.mean for f in fits]), np.array([f.swing for f in fits]))
+    return OwnBeats(columns, frequency, np.array([fit.swing for fit in fits]))
 
 
 @dataclass(frozen=True)
 class _Fit:
-    """Phase at which least is left, share of the square that is left, and of the delay mean and swing, RMS [s]; `made`
-    is what it makes of θ̃, RMS [rad]."""
+    """Phase at which least is left, share of the square that is left, and how far the delay swings, RMS [s]; `made` is
+    what that makes of θ̃, RMS [rad]."""
 
     phase: float
     left: float
-    mean: float
     swing: float
     made: float
 
@@ -130,10 +124,15 @@ class _Run:
         rows = np.flatnonzero(self.t - self.t[0] < LONGEST)[::by]
         return _Run(self.t[rows], self.omega[rows], self.y[rows] - self.y[rows].mean())
 
-    def waves(self, frequency: float) -> float:
-        """Share of the square that a delay of one wave leaves."""
-        waves = np.column_stack([np.ones(self.t.size), wave(TURN * frequency * self.t)])
-        return self._left(self.omega[:, None] * waves)[0]
+    def waves(self, frequencies: Array) -> Array:
+        """Share of the square that a delay of one wave leaves, of each frequency (k,)."""
+        known = orthonormal(np.stack([np.ones(self.t.size), self.omega], 1))
+        turns = TURN * self.t[:, None] * frequencies
+        c, s = (_without(known, self.omega[:, None] * of(turns)) for of in (np.cos, np.sin))
+        y = _without(known, self.y[:, None])
+        cc, ss, cs, cy, sy = (np.sum(a * b, axis=0) for a, b in ((c, c), (s, s), (c, s), (c, y), (s, y)))
+        taken = (ss * cy**2 - 2 * cs * cy * sy + cc * sy**2) / np.maximum(cc * ss - cs**2, 1e-300)
+        return np.asarray((float(np.sum(y * y)) - taken) / max(float(self.y @ self.y), 1e-300))
 
     def fitted(self, frequency: float) -> _Fit:
         """Of the best phase."""
@@ -144,7 +143,7 @@ class _Run:
         delay = _delays(self.t, frequency, phase) @ c[:-1]
         swing = delay - delay.mean()
         made = float(np.sqrt(np.mean((self.omega * swing) ** 2)))
-        return _Fit(phase, left, float(delay.mean()), float(swing.std()), made)
+        return _Fit(phase, left, float(swing.std()), made)
 
     def _best(self, frequency: float, phases: Array) -> float:
         """That of the `phases` (k,) at which least is left."""
@@ -158,6 +157,11 @@ class _Run:
         z = np.column_stack([z, np.ones(self.t.size)])
         c = np.linalg.lstsq(z, self.y, rcond=None)[0]
         return float(np.sum((self.y - z @ c) ** 2) / max(float(self.y @ self.y), 1e-300)), np.asarray(c, float)
+
+
+def _without(known: Array, x: Array) -> Array:
+    """What columns `known` (n, q), orthonormal, leave of others (n, k)."""
+    return np.asarray(x - known @ (known.T @ x))
 
 
 def _delays(t: Array, frequency: float, phase: float) -> Array:
@@ -174,10 +178,10 @@ def _frequency(seen: Sequence[_Run]) -> float | None:
     longest = max(float(np.ptp(run.t)) for run in few)
     step = STEP / longest
     grid = np.arange(TURNS / longest, HIGHEST, step)
-    left = np.array([[run.waves(f) for run in few] for f in grid])
-    if not grid.size or np.mean(left[int(np.argmin(left.mean(1)))] < OF_ONE_WAVE) < MOSTLY:
+    left = np.stack([run.waves(grid) for run in few], 1)
+    if not grid.size or np.mean(left[at := int(np.argmin(left.mean(1)))] < OF_ONE_WAVE) < MOSTLY:
         return None
-    best = float(grid[int(np.argmin(left.mean(1)))])
+    best = float(grid[at])
     for width in (step, step / FINE):
         near = best + FINER * width
         best = float(near[int(np.argmin([np.mean([run.fitted(f).left for run in few]) for f in near]))])
