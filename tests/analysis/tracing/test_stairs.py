@@ -67,7 +67,6 @@ def wave(n: float) -> Array:
     [
         [np.zeros(ROWS)] * RUNS,
         [wave(n) for n in (1.0, 2.0, 3.0, 5.0)],  # what waves is drawn better by lines
-        [saw(170, at) for at in (20, 60, 110, 150)],  # steps with a slope in between
         [12 * COUNT * (np.arange(ROWS) > 300)] * RUNS,  # one step a run is told by itself
         [walk(np.random.default_rng(3)), *[np.zeros(ROWS)] * (RUNS - 1)],  # one run alone may have had a shock
     ],
@@ -89,6 +88,15 @@ def test_a_run_too_long_for_it_is_left_alone(monkeypatch: pytest.MonkeyPatch) ->
     made = left([walk(rng) for _ in range(RUNS)])
     monkeypatch.setattr(module, "LONGEST", ROWS - 1)
     assert stairs(rig(SPEEDS), made) == {}
+
+
+def test_a_slope_that_falls_back_leans_between_the_steps_it_is_drawn_by() -> None:
+    """A delay between two clocks that run apart (exam 106, case 13)."""
+    y = left([saw(170, 20)])[0, "A"]
+    back = [149, 319, 489]  # and between them it is drawn by small steps
+    assert module._leans(y, sorted([0, *range(25, 600, 34), *back, ROWS]))
+    made = walk(np.random.default_rng(5))
+    assert not module._leans(left([made])[0, "A"], [0, *(np.flatnonzero(np.diff(made)) + 1), ROWS])
 
 
 def test_a_crest_that_is_drawn_by_two_steps_takes_its_time() -> None:
