@@ -71,8 +71,10 @@ class EncoderInterpolationError(Effect):
 def at_rest(theta: Array, line: float) -> Array:
     """`theta` rad (n,) itself, or its mean where it passes less than half a `line`: as of a load that is locked. A wave
     of that is a straight line through the noise of the reading, and would take the noise away."""
-    means = [part.mean() for part in np.array_split(theta, max(theta.size // MEANT, 1))] if theta.size else [0.0]
-    return theta if np.ptp(means) > line / 2.0 else np.full(theta.size, theta.mean() if theta.size else 0.0)
+    if not theta.size:
+        return theta
+    means = [part.mean() for part in np.array_split(theta, max(theta.size // MEANT, 1))]
+    return theta if np.ptp(means) > line / 2.0 else np.full(theta.size, theta.mean())
 
 
 def divisors(number: int) -> list[int]:

@@ -216,6 +216,11 @@ def orthonormal(x: Array) -> Array:
     return np.asarray(q[:, np.abs(np.diag(r)) > 1e-6 * np.abs(r).max()])
 
 
+def less(q: Array, x: Array) -> Array:
+    """What an orthonormal basis `q` (n, q) leaves of columns `x` (n, k)."""
+    return np.asarray(x - q @ (q.T @ x))
+
+
 def acting(run: Recording, term: Term) -> list[dict[Port, Array]]:
     """What a term does along each piece, (n, k) a port. Of an effect with a state, parts of one piece are cut from what
     it does along the whole: a loop or a resonance that began anew at every cut would be another one."""

@@ -14,7 +14,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from rig.analysis.tracing.fit.equations import Equations, Key, Term, orthonormal
+from rig.analysis.tracing.fit.equations import Equations, Key, Term, less, orthonormal
 from rig.analysis.tracing.floor.local import at_rows, clock
 from rig.analysis.tracing.nameless.law import Nameless
 from rig.core.quantiles import Z95
@@ -36,7 +36,7 @@ LONGEST: Final = 40.0  # s of each run, the same
 LEFT: Final = 0.5  # of a run's square, the most that a delay may leave
 OF_ONE_WAVE: Final = 0.8  # the same of one wave: of what goes up evenly it leaves 0.39
 MOSTLY: Final = 0.75  # of the runs that are fast enough
-GROWS: Final = (0.7, 1.3)  # power of the speed with which what it makes of a run grows
+GROWS: Final = 0.3  # power of the speed by which a delay may grow or shrink
 
 
 class BeatingDelay(Nameless):
@@ -78,36 +78,32 @@ class OwnBeats:
 def own_beats(eq: Equations, e: Mapping[Key, Array], whole: Sequence[int], runs: Sequence[int]) -> OwnBeats | None:
     """In what is left `e` of runs `whole`, none of them a part of one; columns for all `runs`. None where no delay of
     one frequency leaves less than half of most runs that are fast enough."""
-    free = [i for i in whole if (i, "A") in e and not eq.runs[i].locked and "t" in eq.runs[i].has]
-    speed = {i: float(np.sqrt(np.mean(at_rows(eq, (i, "A"), "omega_l") ** 2))) for i in free}
-    told = [i for i in free if speed[i] > SEEN * max(speed.values())]
-    if len(told) < RUNS or max(speed[i] for i in told) < WIDE * min(speed[i] for i in told):
+    free = {i: _run(eq, e, i) for i in whole if (i, "A") in e and not eq.runs[i].locked and "t" in eq.runs[i].has}
+    fastest = max((run.speed for run in free.values()), default=0.0)
+    told = {i: run for i, run in free.items() if run.speed > SEEN * fastest}
+    if len(told) < RUNS or fastest < WIDE * min(run.speed for run in told.values()):
         return None
-    seen = [_Run(clock(eq, (i, "A")), at_rows(eq, (i, "A"), "omega_l"), e[i, "A"] - e[i, "A"].mean()) for i in told]
-    frequency = _frequency(seen)
+    frequency = _frequency(list(told.values()))
     if frequency is None:
         return None
-    fits = [run.fitted(frequency) for run in seen]
-    left = np.array([fit.left for fit in fits])
-    if np.mean(left < LEFT) < MOSTLY or not _grows(seen, fits):
+    fits = {i: run.fitted(frequency) for i, run in told.items()}
+    if np.mean([fit.left < LEFT for fit in fits.values()]) < MOSTLY or not _as_late(told, fits):
         return None
     columns: dict[Key, Array] = {}
-    for i in runs:
-        phase = _Run(clock(eq, (i, "A")), at_rows(eq, (i, "A"), "omega_l"), e[i, "A"]).fitted(frequency).phase
-        made = eq.term(i, Term(BeatingDelay(), (frequency, phase))) if (i, "A") in e else {}
+    for i in (i for i in runs if (i, "A") in e):
+        fit = fits.get(i) or _run(eq, e, i).fitted(frequency)
+        made = eq.term(i, Term(BeatingDelay(), (frequency, fit.phase)))
         columns |= {(i, c): m for c, m in made.items() if np.any(m)}
-    return OwnBeats(columns, frequency, np.array([fit.swing for fit in fits]))
+    return OwnBeats(columns, frequency, np.array([fit.swing for fit in fits.values()]))
 
 
 @dataclass(frozen=True)
 class _Fit:
-    """Phase at which least is left, share of the square that is left, and how far the delay swings, RMS [s]; `made` is
-    what that makes of θ̃, RMS [rad]."""
+    """Phase at which least is left, share of the square that is left, and how far the delay swings, RMS [s]."""
 
     phase: float
     left: float
     swing: float
-    made: float
 
 
 @dataclass(frozen=True)
@@ -117,6 +113,11 @@ class _Run:
     t: Array
     omega: Array
     y: Array
+
+    @property
+    def speed(self) -> float:
+        """RMS."""
+        return float(np.sqrt(np.mean(self.omega**2)))
 
     def thinned(self) -> _Run:
         """Its first rows, some way apart."""
@@ -128,8 +129,8 @@ class _Run:
         """Share of the square that a delay of one wave leaves, of each frequency (k,)."""
         known = orthonormal(np.stack([np.ones(self.t.size), self.omega], 1))
         turns = TURN * self.t[:, None] * frequencies
-        c, s = (_without(known, self.omega[:, None] * of(turns)) for of in (np.cos, np.sin))
-        y = _without(known, self.y[:, None])
+        c, s = (less(known, self.omega[:, None] * of(turns)) for of in (np.cos, np.sin))
+        y = less(known, self.y[:, None])
         cc, ss, cs, cy, sy = (np.sum(a * b, axis=0) for a, b in ((c, c), (s, s), (c, s), (c, y), (s, y)))
         taken = (ss * cy**2 - 2 * cs * cy * sy + cc * sy**2) / np.maximum(cc * ss - cs**2, 1e-300)
         return np.asarray((float(np.sum(y * y)) - taken) / max(float(self.y @ self.y), 1e-300))
@@ -140,10 +141,7 @@ class _Run:
         for width in (1 / PHASES, 1 / PHASES / FINE):
             phase = self._best(frequency, phase + FINER * width)
         left, c = self._at(frequency, phase)
-        delay = _delays(self.t, frequency, phase) @ c[:-1]
-        swing = delay - delay.mean()
-        made = float(np.sqrt(np.mean((self.omega * swing) ** 2)))
-        return _Fit(phase, left, float(swing.std()), made)
+        return _Fit(phase, left, float(np.std(_delays(self.t, frequency, phase) @ c[:-1])))
 
     def _best(self, frequency: float, phases: Array) -> float:
         """That of the `phases` (k,) at which least is left."""
@@ -159,9 +157,9 @@ class _Run:
         return float(np.sum((self.y - z @ c) ** 2) / max(float(self.y @ self.y), 1e-300)), np.asarray(c, float)
 
 
-def _without(known: Array, x: Array) -> Array:
-    """What columns `known` (n, q), orthonormal, leave of others (n, k)."""
-    return np.asarray(x - known @ (known.T @ x))
+def _run(eq: Equations, e: Mapping[Key, Array], run: int) -> _Run:
+    key = (run, "A")
+    return _Run(clock(eq, key), at_rows(eq, key, "omega_l"), e[key] - e[key].mean())
 
 
 def _delays(t: Array, frequency: float, phase: float) -> Array:
@@ -188,9 +186,8 @@ def _frequency(seen: Sequence[_Run]) -> float | None:
     return best
 
 
-def _grows(seen: Sequence[_Run], fits: Sequence[_Fit]) -> bool:
-    """Whether what the delay makes of a run grows in proportion to its speed."""
-    speeds = np.log([float(np.sqrt(np.mean(run.omega**2))) for run in seen])
-    power = float(np.polyfit(speeds, np.log([max(fit.made, 1e-300) for fit in fits]), 1)[0])
-    least, most = GROWS
-    return least < power < most
+def _as_late(told: Mapping[int, _Run], fits: Mapping[int, _Fit]) -> bool:
+    """Whether the delay swings as far at any speed, so that what it makes of a run is in proportion to that."""
+    speeds = np.log([run.speed for run in told.values()])
+    swings = np.log([max(fit.swing, 1e-300) for fit in fits.values()])
+    return bool(abs(np.polyfit(speeds, swings, 1)[0]) < GROWS)

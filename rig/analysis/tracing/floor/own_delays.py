@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from rig.analysis.tracing.fit.equations import Key, Term, orthonormal
+from rig.analysis.tracing.fit.equations import Key, Term, less, orthonormal
 from rig.analysis.tracing.fit.model import Solution
 from rig.analysis.tracing.floor.local import at_rows, clock
 from rig.analysis.tracing.runs.alike import repeats
@@ -106,8 +106,8 @@ def _pair(s: Solution, a: int, b: int) -> _Pair | None:
     # the delay that both have is no difference, nor are zeros where every run has its own
     free = np.isinf(s.design.eq.noise.local["A"])
     shared = orthonormal(np.stack([np.full(here.size, float(free)), apart], 1))
-    y = _without(shared, first["y"][:, None] - second["y"][:, None])[:, 0]
-    made = {by: _without(shared, np.hstack([first[by], -second[by]])) for by in first if by != "y"}
+    y = less(shared, first["y"][:, None] - second["y"][:, None])[:, 0]
+    made = {by: less(shared, np.hstack([first[by], -second[by]])) for by in first if by != "y"}
     left = [float(np.sum((y - z @ np.linalg.lstsq(z, y, rcond=None)[0]) ** 2)) for z in made.values()]
     return _Pair(y, max(min(left) / (y.size - 2 * KNOTS.size), 1e-300), made)
 
@@ -136,10 +136,6 @@ def _seen(s: Solution, run: int) -> tuple[npt.NDArray[np.int64], dict[str, Array
 def _means(x: Array, first: npt.NDArray[np.int64], count: npt.NDArray[np.int64]) -> Array:
     """Of so many rows from each first one on, (n, …)."""
     return np.asarray(np.add.reduceat(x, first) / count.reshape(-1, *[1] * (x.ndim - 1)))
-
-
-def _without(q: Array, x: Array) -> Array:
-    return np.asarray(x - q @ (q.T @ x))
 
 
 def _differ(pairs: Sequence[_Pair]) -> float:
